@@ -1,0 +1,19 @@
+// Hull outlines: back faces of an enlarged copy [Prost2016 §4.1].
+
+// By how much a sphere of `radius` at `center` grows so that its outline in the picture moves by
+// `width_px`, plus `width_world`. The angle of the silhouette cone grows by the angle of the pixels,
+// at the mean scale of the picture around the sphere's rim: pixels are stretched by 1/cos^2 away
+// from the axis along the radius and by 1/cos across it.
+fn hull_radius(view: View, center: vec3<f32>, radius: f32, width_px: f32, width_world: f32) -> f32 {
+    let wide = radius + width_world;
+    if view.orthographic > 0.5 {
+        return wide + width_px * view.pixel_view;
+    }
+    let distance = length(center);
+    if distance <= wide { return wide; }
+    let cosine = clamp(-center.z / distance, 0.2, 1.0);
+    let sine = wide / distance;
+    let tangent = sine / sqrt(max(1.0 - sine * sine, 1e-6));
+    let grown = tangent + width_px * view.pixel_view * 0.5 * (cosine + cosine * cosine);
+    return distance * grown / sqrt(1.0 + grown * grown);
+}

@@ -1,0 +1,48 @@
+// What is drawn: atoms as spheres, connectors as cylinders, and the ids that the visibility pass writes.
+
+struct Atom {
+    position_world: vec3<f32>,
+    radius: f32,
+    // Linear RGB as half floats: (r, g), (b, unused).
+    color: vec2<u32>,
+    material: u32,
+    _pad0: u32,
+}
+
+struct Connector {
+    a_world: vec3<f32>,
+    radius: f32,
+    b_world: vec3<f32>,
+    material: u32,
+    color_a: vec2<u32>,
+    color_b: vec2<u32>,
+}
+
+struct Material {
+    // Linear RGB; alpha 1 replaces the object's own colour, 0 keeps it.
+    base_color: vec4<f32>,
+    // Linear RGB of the hull outline.
+    hull_color: vec4<f32>,
+    // Width of the hull outline: pixels plus scene units. 0 and 0: none.
+    hull_px: f32,
+    hull_world: f32,
+    // Which object shader, by its place in the registry, and which of its parameter sets.
+    shader: u32,
+    index: u32,
+}
+
+// An id holds what a pixel sees: kind in the upper 3 bits, index in the lower 29; 0 is nothing.
+const KIND_NONE: u32 = 0u;
+const KIND_ATOM: u32 = 1u;
+const KIND_CONNECTOR: u32 = 2u;
+const KIND_ATOM_HULL: u32 = 3u;
+const KIND_CONNECTOR_HULL: u32 = 4u;
+const INDEX_MASK: u32 = 0x1fffffffu;
+
+fn make_id(kind: u32, index: u32) -> u32 {
+    return (kind << 29u) | index;
+}
+
+fn unpack_linear(color: vec2<u32>) -> vec3<f32> {
+    return vec3<f32>(unpack2x16float(color.x), unpack2x16float(color.y).x);
+}

@@ -1,0 +1,114 @@
+// Shadows from maps that hold, for each texel, the id and depth of what the light sees first.
+// Hard: the ids near a point name the few objects that can shade it, and an exact ray cast against
+// those gives an edge that does not depend on the map's resolution (ours).
+// Soft: average depth of what blocks, then a filter as wide as the penumbra [Fernando2005 §2].
+// A convex object never shades itself: its unlit side is found by n.l, so there is no bias for it.
+
+const SOFT_TAPS: u32 = 16u;
+const MAX_SHADOWS: u32 = 4u;
+
+struct ShadowView {
+    light: View,
+    light_from_view: mat4x4<f32>,
+}
+
+struct Shadows {
+    views: array<ShadowView, 4>,
+}
+
+// Blocks the way from `origin` along `toward` (light space) the object `id`?
+fn blocks(light_view: View, id: u32, origin: vec3<f32>, toward: vec3<f32>) -> bool {
+    let ray = Ray(origin, toward);
+    let index = id & INDEX_MASK;
+    var span = vec2<f32>(1.0, -1.0);
+    if (id >> 29u) == KIND_ATOM {
+        let atom = atoms[index];
+        span = sphere_span(ray, to_view(light_view, atom.position_world), atom.radius);
+    } else {
+        let connector = connectors[index];
+        let a = to_view(light_view, connector.a_world);
+        let b = to_view(light_view, connector.b_world);
+        span = cone_span(ray, a, b, connector.radius, connector.radius);
+    }
+    return span.x <= span.y && span.y > 0.0;
+}
+
+// Depth of the light's view at a map value; the inverse of depth_value.
+fn t_from_depth(light_view: View, value: f32) -> f32 {
+    if light_view.orthographic > 0.5 {
+        return (value - light_view.depth_from_t.y) / light_view.depth_from_t.z;
+    }
+    return light_view.depth_from_t.x / max(value, 1e-9);
+}
+
+fn shadow_light(light: Light, s: Surface) -> f32 {
+    let layer = light.shadow;
+    let light_view = shadows.views[layer].light;
+    let point = (shadows.views[layer].light_from_view * vec4<f32>(s.position_view, 1.0)).xyz;
+    let t = -point.z;
+    if t <= light_view.near { return 1.0; }
+    let ndc = point.xy / (light_view.half_extent * mix(t, 1.0, light_view.orthographic));
+    let place_px = (ndc * vec2<f32>(0.5, -0.5) + 0.5) * light_view.size_px;
+    let last = vec2<i32>(light_view.size_px) - 1;
+    if light.softness_tan <= 0.0 {
+        let toward = mix(-normalize(point), vec3<f32>(0.0, 0.0, 1.0), light_view.orthographic);
+        let base = vec2<i32>(floor(place_px - 0.5));
+        var seen = s.id;
+        for (var i = 0; i < 4; i++) {
+            let texel = base + vec2<i32>(i & 1, i >> 1);
+            if any(texel < vec2<i32>(0)) || any(texel > last) { continue; }
+            let id = textureLoad(shadow_ids, texel, layer, 0).x;
+            if id == 0u || id == s.id || id == seen { continue; }
+            seen = id;
+            if blocks(light_view, id, point, toward) { return 0.0; }
+        }
+        return 1.0;
+    }
+
+    let texel_light = light_view.pixel_view * mix(t, 1.0, light_view.orthographic);
+    // Two texels: neighbouring objects that touch do not shade each other's seam.
+    let near_enough = t - 2.0 * texel_light;
+    // The widest penumbra: as if the blocker were the nearest thing that the light can see.
+    let reach = light.softness_tan * (t - light_view.near) / texel_light;
+    let turn = view.sample_rotation_rad + 6.2831853 * interleaved_noise(place_px);
+    var blocker_sum = 0.0;
+    var blockers = 0.0;
+    for (var i = 0u; i < SOFT_TAPS; i++) {
+        let blocker = shadow_tap(light_view, layer, place_px + reach * disc_tap(i, turn), last, s.id);
+        if blocker > 0.0 && blocker < near_enough {
+            blocker_sum += blocker;
+            blockers += 1.0;
+        }
+    }
+    if blockers == 0.0 { return 1.0; }
+    let blocker_t = blocker_sum / blockers;
+    // Similar triangles: half the penumbra, seen from the blocker towards the receiver.
+    let wide = max(light.softness_tan * (t - blocker_t) / texel_light, 0.5);
+    var open = 0.0;
+    for (var i = 0u; i < SOFT_TAPS; i++) {
+        let blocker = shadow_tap(light_view, layer, place_px + wide * disc_tap(i, turn), last, s.id);
+        if blocker <= 0.0 || blocker >= near_enough { open += 1.0; }
+    }
+    return open / f32(SOFT_TAPS);
+}
+
+// Depth of what the light sees at a place; 0 where that is nothing, outside, or the receiver itself.
+fn shadow_tap(light_view: View, layer: i32, place_px: vec2<f32>, last: vec2<i32>, own: u32) -> f32 {
+    let texel = vec2<i32>(floor(place_px));
+    if any(texel < vec2<i32>(0)) || any(texel > last) { return 0.0; }
+    let id = textureLoad(shadow_ids, texel, layer, 0).x;
+    if id == 0u || id == own { return 0.0; }
+    return t_from_depth(light_view, textureLoad(shadow_depth, texel, layer, 0));
+}
+
+// Points spread evenly over the unit disc on a spiral of the golden angle [Vogel1979 eq. 1].
+fn disc_tap(i: u32, turn: f32) -> vec2<f32> {
+    let angle = f32(i) * 2.3999632 + turn;
+    return sqrt((f32(i) + 0.5) / f32(SOFT_TAPS)) * vec2<f32>(cos(angle), sin(angle));
+}
+
+// A value in 0..1 for each texel, different among neighbours [Jimenez2014 p. 123].
+fn interleaved_noise(place_px: vec2<f32>) -> f32 {
+    let p = floor(place_px);
+    return fract(52.9829189 * fract(dot(p, vec2<f32>(0.06711056, 0.00583715))));
+}

@@ -1,0 +1,85 @@
+// The visible surface of one pixel, found again from its id by an exact ray cast, with the
+// derivatives that anti-alias steps in its shading.
+
+struct Surface {
+    position_view: vec3<f32>,
+    // Unit, turned to the viewer.
+    normal_view: vec3<f32>,
+    // Unit.
+    to_viewer: vec3<f32>,
+    // Linear RGB.
+    base_color: vec3<f32>,
+    // Changes across one sample's footprint to the right (dx) and down (dy).
+    position_dx: vec3<f32>,
+    position_dy: vec3<f32>,
+    normal_dx: vec3<f32>,
+    normal_dy: vec3<f32>,
+    to_viewer_dx: vec3<f32>,
+    to_viewer_dy: vec3<f32>,
+    id: u32,
+}
+
+// Where a point moves on the tangent plane when its ray moves by `step` [Igehy1999 §3.1].
+fn tangent_step(ray: Ray, t: f32, normal: vec3<f32>, step: vec3<f32>, orthographic: f32) -> vec3<f32> {
+    let moved = step * mix(t, 1.0, orthographic);
+    let facing = dot(normal, ray.direction);
+    return moved - ray.direction * (dot(normal, moved) / min(facing, -1e-4));
+}
+
+fn to_viewer_step(ray: Ray, step: vec3<f32>, orthographic: f32) -> vec3<f32> {
+    let inverse = inverseSqrt(dot(ray.direction, ray.direction));
+    let toward = ray.direction * inverse;
+    return -(step - toward * dot(toward, step)) * inverse * (1.0 - orthographic);
+}
+
+// The surface that `id` names along `ray`; `material` and colour are filled by the caller.
+fn surface_at(ray: Ray, id: u32) -> Surface {
+    var s: Surface;
+    let index = id & INDEX_MASK;
+    var normal = vec3<f32>(0.0);
+    var t = 0.0;
+    // Curvature of a sphere is 1/r both ways, of a cylinder 1/r across its axis.
+    var axis = vec3<f32>(0.0);
+    var bend = 0.0;
+    if (id >> 29u) == KIND_ATOM {
+        let atom = atoms[index];
+        let center = to_view(view, atom.position_world);
+        t = first_beyond(sphere_span(ray, center, atom.radius), view.near);
+        normal = sphere_normal(ray, t, center, atom.radius);
+        s.base_color = unpack_linear(atom.color);
+        bend = 1.0 / atom.radius;
+    } else {
+        let connector = connectors[index];
+        let a = to_view(view, connector.a_world);
+        let b = to_view(view, connector.b_world);
+        t = first_beyond(cone_span(ray, a, b, connector.radius, connector.radius), view.near);
+        normal = cylinder_normal(ray, t, a, b, connector.radius);
+        axis = normalize(b - a);
+        let along = dot(ray.origin + t * ray.direction - 0.5 * (a + b), axis);
+        s.base_color = unpack_linear(select(connector.color_a, connector.color_b, along > 0.0));
+        // A cap is flat.
+        bend = select(1.0 / connector.radius, 0.0, abs(dot(normal, axis)) > 0.5);
+    }
+    // Seen from inside, the surface is turned to the viewer.
+    let turned = select(1.0, -1.0, dot(normal, ray.direction) > 0.0);
+    normal *= turned;
+    s.id = id;
+    s.position_view = ray.origin + t * ray.direction;
+    s.normal_view = normal;
+    s.to_viewer = -normalize(ray.direction);
+    let dx = ray_step_dx(view);
+    let dy = ray_step_dy(view);
+    s.position_dx = tangent_step(ray, t, normal, dx, view.orthographic);
+    s.position_dy = tangent_step(ray, t, normal, dy, view.orthographic);
+    s.normal_dx = turned * bend * (s.position_dx - axis * dot(axis, s.position_dx));
+    s.normal_dy = turned * bend * (s.position_dy - axis * dot(axis, s.position_dy));
+    s.to_viewer_dx = to_viewer_step(ray, dx, view.orthographic);
+    s.to_viewer_dy = to_viewer_step(ray, dy, view.orthographic);
+    return s;
+}
+
+fn object_material(id: u32) -> u32 {
+    let kind = id >> 29u;
+    if kind == KIND_ATOM || kind == KIND_ATOM_HULL { return atoms[id & INDEX_MASK].material; }
+    return connectors[id & INDEX_MASK].material;
+}

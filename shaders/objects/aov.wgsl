@@ -1,0 +1,22 @@
+// Geometry of the nearest surface at each pixel's centre: view-space normal, depth and id.
+// Depth is -z_view in scene units, -1 where nothing is.
+
+@group(0) @binding(0) var<uniform> view: View;
+@group(0) @binding(1) var<storage, read> atoms: array<Atom>;
+@group(0) @binding(2) var<storage, read> connectors: array<Connector>;
+@group(1) @binding(0) var visibility: texture_2d<u32>;
+
+@vertex
+fn aov_vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
+    return vec4<f32>(f32(corner & 1u) * 4.0 - 1.0, f32(corner >> 1u) * 4.0 - 1.0, 0.5, 1.0);
+}
+
+@fragment
+fn aov_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let id = textureLoad(visibility, vec2<i32>(position.xy), 0).x;
+    if id == 0u || (id >> 29u) > KIND_CONNECTOR {
+        return vec4<f32>(0.0, 0.0, 0.0, -1.0);
+    }
+    let s = surface_at(ray_at(view, position.xy + view.jitter_px), id);
+    return vec4<f32>(s.normal_view, -s.position_view.z);
+}

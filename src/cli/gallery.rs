@@ -1,0 +1,204 @@
+//! `restyle gallery`: every look on every molecule, as PNG files and one contact sheet that opens from disk.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::inputs::{self, Size};
+use super::render::{cannot_write, progress_bar};
+use super::{Failure, render};
+use crate::config::Style;
+use crate::engine::{Engine, Request};
+use crate::gpu::Gpu;
+use crate::scene::{LoadOptions, ModelChoice, Scene, write_whole};
+use crate::shipped::{LOOKS, MOLECULES};
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// Molecule files or names of shipped molecules; all shipped ones by default
+    scenes: Vec<String>,
+    /// Style files or names of looks (repeatable); all shipped ones by default
+    #[arg(short, long)]
+    style: Vec<String>,
+    /// The folder to write to; it is made if it is not there
+    #[arg(short, long, value_name = "DIR", default_value = "gallery")]
+    output: PathBuf,
+    /// Width and height of each picture in pixels
+    #[arg(long, value_name = "WxH", default_value = "640x640")]
+    size: Size,
+    /// Samples a pixel
+    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=1024))]
+    samples: u32,
+}
+
+/// One row or column of the sheet: what it is called, and the stem of its file names.
+struct Named<T> {
+    label: String,
+    stem: String,
+    value: T,
+}
+
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let start = Instant::now();
+    let or_all = |given: &[String], all: &[crate::shipped::Shipped]| -> Vec<String> {
+        if given.is_empty() { all.iter().map(|shipped| shipped.name.to_owned()).collect() } else { given.to_vec() }
+    };
+    let scene_names = or_all(&args.scenes, MOLECULES);
+    let style_names = or_all(&args.style, LOOKS);
+
+    // All that can be wrong with the input is found before anything is written.
+    let options = LoadOptions { model: ModelChoice::First };
+    let mut styles: Vec<Named<Style>> = Vec::new();
+    for name in &style_names {
+        let stem = free_stem(name, styles.iter().map(|style| style.stem.as_str()));
+        styles.push(Named { label: stem.clone(), stem, value: inputs::load_style(name)? });
+    }
+    let mut scenes: Vec<Named<Scene>> = Vec::new();
+    for name in &scene_names {
+        let stem = free_stem(name, scenes.iter().map(|scene| scene.stem.as_str()));
+        scenes.push(Named { label: stem.replace('_', " "), stem, value: inputs::load_scene(name, options)?.scene });
+    }
+    let gpu = Arc::new(Gpu::open()?);
+    let adapter = gpu.info.name.clone();
+    std::fs::create_dir_all(&args.output).map_err(|error| Failure::input(cannot_write(&args.output, &error)))?;
+
+    // A note that every cell of a look shares is told once.
+    let mut told: Vec<String> = Vec::new();
+    let bar = progress_bar((styles.len() * scenes.len()) as u64 + 9, false);
+    bar.set_length((styles.len() * scenes.len()) as u64);
+    let mut engine: Option<Engine> = None;
+    for scene in &scenes {
+        let mut fresh_scene = true;
+        for style in &styles {
+            for warning in style.value.warnings.iter().map(ToString::to_string) {
+                if !told.contains(&warning) {
+                    bar.suspend(|| eprintln!("{warning}"));
+                    told.push(warning);
+                }
+            }
+            let engine = match &mut engine {
+                Some(engine) => {
+                    if fresh_scene {
+                        engine.set_scene(scene.value.clone());
+                    }
+                    engine.set_style(style.value.clone());
+                    engine
+                }
+                none => none.insert(Engine::new(Arc::clone(&gpu), scene.value.clone(), style.value.clone())),
+            };
+            fresh_scene = false;
+            let request = Request { size: args.size.0, samples: args.samples, transparent: false, wide: false };
+            let file = args.output.join(file_name(scene, style));
+            let image = engine.still(&request)?;
+            image.write_png(&file).map_err(|error| Failure::input(cannot_write(&file, &error)))?;
+            bar.inc(1);
+        }
+    }
+    bar.finish_and_clear();
+    let sheet = args.output.join("index.html");
+    let page = contact_sheet(&scenes, &styles, args, &adapter);
+    write_whole(&sheet, |file| file.write_all(page.as_bytes()))
+        .map_err(|error| Failure::input(render::cannot_write(&sheet, &error)))?;
+    println!(
+        "{} pictures in {:.1} s on {adapter}; open {}",
+        styles.len() * scenes.len(),
+        start.elapsed().as_secs_f64(),
+        sheet.display()
+    );
+    Ok(())
+}
+
+/// The file's stem in letters that every file system takes, with a number where it is taken already.
+fn free_stem<'a>(name: &str, taken: impl Iterator<Item = &'a str> + Clone) -> String {
+    let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
+    let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
+    let stem: String = stem.chars().map(safe).collect();
+    let stem = if stem.is_empty() { "unnamed".to_owned() } else { stem };
+    let mut candidate = stem.clone();
+    let mut number = 2;
+    while taken.clone().any(|other| other == candidate) {
+        candidate = format!("{stem}-{number}");
+        number += 1;
+    }
+    candidate
+}
+
+fn file_name<A, B>(scene: &Named<A>, style: &Named<B>) -> String {
+    format!("{}.{}.png", scene.stem, style.stem)
+}
+
+/// The page: one row for each scene, one column for each look, as the published table has them.
+fn contact_sheet(scenes: &[Named<Scene>], styles: &[Named<Style>], args: &Args, adapter: &str) -> String {
+    let [width, height] = args.size.0;
+    let mut page = format!(
+        "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n\
+         <title>restyle gallery</title>\n<style>\n{CSS}</style>\n<h1>restyle</h1>\n\
+         <p>{} looks on {} scenes, {width}x{height}, {} samples a pixel, drawn on {}.</p>\n<table>\n<thead><tr><th></th>",
+        styles.len(),
+        scenes.len(),
+        args.samples,
+        escaped(adapter)
+    );
+    for style in styles {
+        let _ = write!(page, "<th scope=\"col\">{}</th>", escaped(&style.label));
+    }
+    page.push_str("</tr></thead>\n<tbody>\n");
+    for scene in scenes {
+        let molecule = &scene.value.molecule;
+        let _ = write!(
+            page,
+            "<tr><th scope=\"row\">{}<small>{} atoms<br>{} bonds</small></th>",
+            escaped(&scene.label),
+            molecule.atoms.len(),
+            molecule.bonds.len()
+        );
+        for style in styles {
+            let file = escaped(&file_name(scene, style));
+            let alt = escaped(&format!("{} in the look {}", scene.label, style.label));
+            let _ = write!(
+                page,
+                "<td><a href=\"{file}\"><img src=\"{file}\" width=\"{width}\" height=\"{height}\" loading=\"lazy\" alt=\"{alt}\"></a></td>"
+            );
+        }
+        page.push_str("</tr>\n");
+    }
+    page.push_str("</tbody>\n</table>\n</html>\n");
+    page
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// Neutral surroundings, so that the pictures' own backgrounds show.
+const CSS: &str = "\
+body { margin: 2rem auto; max-width: 110rem; padding: 0 1.5rem; background: #dfe1e4; color: #1d2127; font: 16px/1.4 system-ui, sans-serif; }
+h1 { margin: 0; font-weight: 600; letter-spacing: -0.02em; }
+p { margin: 0.2rem 0 1.5rem; color: #555b66; }
+table { width: 100%; border-collapse: separate; border-spacing: 10px; table-layout: fixed; }
+thead th { position: sticky; top: 0; padding: 0.6rem 0; background: #dfe1e4; font-weight: 600; text-transform: capitalize; z-index: 1; }
+thead th:first-child { width: 9rem; }
+tbody th { text-align: left; vertical-align: middle; font-weight: 600; text-transform: capitalize; overflow-wrap: anywhere; }
+small { display: block; margin-top: 0.2rem; color: #6a707b; font-weight: 400; text-transform: none; }
+td { padding: 0; }
+img { display: block; width: 100%; height: auto; border-radius: 6px; box-shadow: 0 1px 4px #0003; }
+";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stems_are_safe_and_unique() {
+        assert_eq!(free_stem("a/b c.pdb", ["x"].into_iter()), "b_c");
+        assert_eq!(free_stem("a/x.pdb", ["x", "x-2"].into_iter()), "x-3");
+        assert_eq!(free_stem("..", [].into_iter()), "unnamed");
+    }
+
+    #[test]
+    fn names_cannot_break_the_page() {
+        assert_eq!(escaped("<a href=\"&\">"), "&lt;a href=&quot;&amp;&quot;&gt;");
+    }
+}

@@ -1,0 +1,93 @@
+//! Scenes, styles and sizes as the command line names them.
+
+use std::path::Path;
+use std::time::Instant;
+
+use super::Failure;
+use crate::config::{self, Catalog, Source, Style};
+use crate::engine;
+use crate::scene::{LoadOptions, ModelChoice, Scene};
+use crate::shipped::{self, Shipped};
+
+/// A picture size written as `WxH`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Size(pub [u32; 2]);
+
+impl std::str::FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Size, String> {
+        let parsed = text.split_once(['x', 'X']).and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+        match parsed {
+            Some([0, _] | [_, 0]) => Err("a picture is at least 1x1".to_owned()),
+            Some(size) => Ok(Size(size)),
+            None => Err("a size is two whole numbers, such as 1920x1080".to_owned()),
+        }
+    }
+}
+
+/// Which models of a molecule file: `all` or a number.
+pub(crate) fn parse_model(text: &str) -> Result<ModelChoice, String> {
+    match text {
+        "all" => Ok(ModelChoice::All),
+        number => number.parse().map(ModelChoice::Number).map_err(|_| "a model is its number, or all".to_owned()),
+    }
+}
+
+/// A scene with the time that loading it took.
+pub(crate) struct Loaded {
+    pub(crate) scene: Scene,
+    pub(crate) ms: f64,
+}
+
+/// Loads a file, or a shipped molecule by its name.
+pub(crate) fn load_scene(name: &str, options: LoadOptions) -> Result<Loaded, Failure> {
+    let start = Instant::now();
+    let path = Path::new(name);
+    let scene = match shipped::find(shipped::MOLECULES, name) {
+        Some(molecule) if !path.exists() => Scene::from_bytes_with(molecule.file, molecule.bytes, &options),
+        None if looks_like_a_name(path) => return Err(unknown("molecule", name, shipped::MOLECULES)),
+        _ => Scene::load_with(path, &options),
+    };
+    let scene = scene.map_err(Failure::input)?;
+    Ok(Loaded { scene, ms: start.elapsed().as_secs_f64() * 1e3 })
+}
+
+/// Loads a style file, or a shipped look by its name. Warnings go to stderr.
+pub(crate) fn load_style(name: &str) -> Result<Style, Failure> {
+    let entries = engine::catalog();
+    let catalog = Catalog { shaders: &entries, kinds: engine::DRAWN_KINDS };
+    let path = Path::new(name);
+    let style = match shipped::find(shipped::LOOKS, name) {
+        Some(look) if !path.exists() => config::load(&Source::new(look.file, look.bytes), &catalog),
+        None if looks_like_a_name(path) => return Err(unknown("look", name, shipped::LOOKS)),
+        _ => config::load_file(path, &catalog),
+    };
+    let style = style.map_err(Failure::input)?;
+    Ok(style)
+}
+
+/// Prints what a style says that this version passes over, and what a scene's file had mended.
+pub(crate) fn print_warnings(style: &Style, scene: &Scene) {
+    for warning in &style.warnings {
+        eprintln!("{warning}");
+    }
+    if !scene.report.is_empty() {
+        eprint!("{}", scene.report);
+    }
+}
+
+fn looks_like_a_name(path: &Path) -> bool {
+    !path.exists() && path.extension().is_none() && path.components().count() == 1
+}
+
+fn unknown(what: &str, name: &str, among: &'static [Shipped]) -> Failure {
+    let nearest = among
+        .iter()
+        .map(|shipped| (strsim::damerau_levenshtein(shipped.name, name), shipped.name))
+        .min()
+        .filter(|(distance, nearest)| *distance <= nearest.len() / 2);
+    let hint = nearest.map_or(String::new(), |(_, nearest)| format!("; did you mean {nearest:?}?"));
+    let names: Vec<&str> = among.iter().map(|shipped| shipped.name).collect();
+    Failure::input(format!("{name}: no such file, and no {what} of this name{hint} shipped: {}", names.join(", ")))
+}

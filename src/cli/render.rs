@@ -1,0 +1,210 @@
+//! `restyle render SCENE -s STYLE -o OUT.png`: one still, its AOVs, its timings.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::inputs::{self, Size};
+use super::{Failure, inputs::Loaded};
+use crate::config::Style;
+use crate::engine::{Engine, Request};
+use crate::frame::MAX_SAMPLES;
+use crate::gpu::Gpu;
+use crate::scene::{AovName, LoadOptions, ModelChoice};
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// A molecule file (PDB, XYZ) or the name of a shipped molecule
+    scene: String,
+    /// A style file or the name of a shipped look
+    #[arg(short, long, default_value = "education")]
+    style: String,
+    /// The picture to write
+    #[arg(short, long, value_name = "OUT.png")]
+    output: Option<PathBuf>,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "1000x1000")]
+    size: Size,
+    /// Samples a pixel
+    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
+    samples: u32,
+    /// Leave the background transparent (straight alpha)
+    #[arg(long)]
+    transparent: bool,
+    /// Bits a channel of the PNG
+    #[arg(long, default_value = "8", value_parser = ["8", "16"])]
+    bits: String,
+    /// Which model of the file: its number, or all; the first by default
+    #[arg(long, value_parser = inputs::parse_model)]
+    model: Option<ModelChoice>,
+    /// Also time this many warm frames
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=10_000))]
+    frames: u32,
+    /// Write a linear float picture: depth, normal, id or color (repeatable)
+    #[arg(long, value_name = "NAME=FILE.exr", value_parser = parse_aov)]
+    aov: Vec<(AovName, PathBuf)>,
+    /// Print one line of JSON: adapter, times, counts, bytes
+    #[arg(long)]
+    json: bool,
+}
+
+fn parse_aov(text: &str) -> Result<(AovName, PathBuf), String> {
+    let names = || AovName::ALL.map(|(name, _)| name).join(", ");
+    let (name, file) = text.split_once('=').ok_or_else(|| format!("write it as NAME=FILE.exr, NAME one of {}", names()))?;
+    let aov = AovName::ALL.iter().find(|(known, _)| *known == name);
+    match aov {
+        Some((_, aov)) if !file.is_empty() => Ok((*aov, PathBuf::from(file))),
+        Some(_) => Err("the file name is missing".to_owned()),
+        None => Err(format!("there is no {name:?}; there are {}", names())),
+    }
+}
+
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let start = Instant::now();
+    if args.output.is_none() && args.aov.is_empty() && !args.json {
+        return Err(Failure::usage("nothing to write: give -o OUT.png, --aov NAME=FILE.exr or --json"));
+    }
+    let outputs = args.output.iter().chain(args.aov.iter().map(|(_, file)| file));
+    outputs.map(PathBuf::as_path).try_for_each(check_writable)?;
+    let options = LoadOptions { model: args.model.unwrap_or(ModelChoice::First) };
+
+    // The device opens while the files are read.
+    let (gpu, loaded, style) = std::thread::scope(|scope| {
+        let gpu = scope.spawn(|| {
+            let start = Instant::now();
+            (Gpu::open(), start.elapsed().as_secs_f64() * 1e3)
+        });
+        let style: Result<Style, Failure> = inputs::load_style(&args.style);
+        let loaded: Result<Loaded, Failure> = inputs::load_scene(&args.scene, options);
+        (gpu.join(), loaded, style)
+    });
+    let (style, loaded) = (style?, loaded?);
+    let (gpu, device_ms) = gpu.map_err(|_| Failure::from(crate::gpu::GpuError::NoAdapter))?;
+    let gpu = Arc::new(gpu?);
+    inputs::print_warnings(&style, &loaded.scene);
+    let load_ms = loaded.ms;
+
+    let request = Request {
+        size: args.size.0,
+        samples: args.samples,
+        transparent: args.transparent,
+        wide: args.bits == "16",
+    };
+    let mut engine = Engine::new(gpu, loaded.scene, style);
+    if let Some(limit) = engine.limits_exceeded() {
+        eprintln!("{}: warning: {limit}", args.style);
+    }
+    let first = Instant::now();
+    let bar = progress_bar(u64::from(args.samples), args.json);
+    engine.draw(&request, false, &mut |done| bar.set_position(u64::from(done)))?;
+    bar.finish_and_clear();
+    let first_frame_ms = first.elapsed().as_secs_f64() * 1e3;
+
+    let read = Instant::now();
+    let image = engine.read(&request)?;
+    let readback_ms = read.elapsed().as_secs_f64() * 1e3;
+    let encode = Instant::now();
+    if let Some(output) = &args.output {
+        image.write_png(output).map_err(|error| Failure::input(cannot_write(output, &error)))?;
+    }
+    let encode_ms = encode.elapsed().as_secs_f64() * 1e3;
+    let total_ms = start.elapsed().as_secs_f64() * 1e3;
+
+    let mut frame_ms = Vec::new();
+    for _ in 0..args.frames {
+        frame_ms.push(rounded(engine.draw(&request, false, &mut |_| ())?));
+    }
+    let passes = if args.json {
+        engine.draw(&request, true, &mut |_| ())?;
+        engine.pass_times().iter().map(|(name, ms)| ((*name).to_owned(), rounded(*ms).into())).collect()
+    } else {
+        serde_json::Map::new()
+    };
+    if !args.aov.is_empty() {
+        let aovs = engine.aovs(&request)?;
+        for (name, file) in &args.aov {
+            aovs.write_exr(*name, file).map_err(|error| Failure::input(cannot_write(file, &error)))?;
+        }
+    }
+    if args.json {
+        let info = &engine.gpu().info;
+        let counts = engine.counts();
+        let molecule = &engine.scene().molecule;
+        let targets: serde_json::Map<String, serde_json::Value> =
+            engine.target_bytes().into_iter().map(|(name, bytes)| (name.to_owned(), bytes.into())).collect();
+        let line = serde_json::json!({
+            "scene": args.scene,
+            "style": args.style,
+            "size": args.size.0,
+            "samples": args.samples,
+            "adapter": info.name,
+            "driver": format!("{} {}", info.driver, info.driver_info),
+            "renderer": "gpu",
+            "device_ms": rounded(device_ms),
+            "load_ms": rounded(load_ms),
+            "first_frame_ms": rounded(first_frame_ms),
+            "readback_ms": rounded(readback_ms),
+            "encode_ms": rounded(encode_ms),
+            "total_ms": rounded(total_ms),
+            "frame_ms": frame_ms,
+            "pass_ms": passes,
+            "pipelines_built": engine.pipelines_built(),
+            "peak_rss_mb": peak_rss_mb(),
+            "atoms": molecule.atoms.len(),
+            "bonds": molecule.bonds.len(),
+            "spheres": counts.spheres,
+            "cylinders": counts.cylinders,
+            "triangles": counts.triangles,
+            "target_bytes": targets,
+        });
+        println!("{line}");
+    }
+    Ok(())
+}
+
+/// A bar on a terminal; silent elsewhere, for short work and beside JSON.
+pub(super) fn progress_bar(steps: u64, quiet: bool) -> indicatif::ProgressBar {
+    use std::io::IsTerminal;
+    if quiet || steps <= 8 || !std::io::stderr().is_terminal() {
+        return indicatif::ProgressBar::hidden();
+    }
+    indicatif::ProgressBar::new(steps)
+}
+
+fn rounded(ms: f64) -> f64 {
+    (ms * 100.0).round() / 100.0
+}
+
+/// Largest memory that the process held, in MiB; none where the system does not tell.
+fn peak_rss_mb() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kib: f64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;
+    Some(rounded(kib / 1024.0))
+}
+
+/// Refuses what cannot be written before any work is done.
+fn check_writable(path: &Path) -> Result<(), Failure> {
+    if path.is_dir() {
+        return Err(Failure::input(format!("{}: is a folder; name a file in it", path.display())));
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        let folder = folder.display();
+        return Err(Failure::input(format!("{}: the folder {folder} does not exist; make it first", path.display())));
+    }
+    Ok(())
+}
+
+/// Why a file could not be written, in plain words.
+pub(super) fn cannot_write(path: &Path, error: &io::Error) -> String {
+    let path = path.display();
+    match error.kind() {
+        io::ErrorKind::NotFound => format!("{path}: its folder does not exist; make it first"),
+        io::ErrorKind::PermissionDenied => format!("{path}: no permission to write there"),
+        io::ErrorKind::StorageFull => format!("{path}: the disk is full"),
+        io::ErrorKind::IsADirectory => format!("{path}: is a folder; name a file in it"),
+        _ => format!("{path}: cannot be written: {error}"),
+    }
+}

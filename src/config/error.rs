@@ -1,0 +1,326 @@
+//! What can be wrong with a style file, and how it is said.
+//!
+//! Every mistake has a [`Place`] and is shown on one line as
+//! `file:line:col (json.path): what is wrong; did you mean "…"? allowed: …`.
+//! All mistakes of a file are collected in [`Mistakes`], in the order of the text. Warnings look the same.
+
+use std::fmt;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::hint::{Hint, quote};
+
+/// Most mistakes that are listed; the rest is counted.
+/// Ours: more than a screen holds, and a bound on the work that a hostile file causes.
+const MOST_LISTED: usize = 100;
+
+/// A place in a file: what a message points at.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// The file, named as the user named it.
+    pub file: Arc<str>,
+    /// Line, from 1; 0 means the file as a whole.
+    pub line: u32,
+    /// Column in characters, from 1; 0 means the file as a whole.
+    pub column: u32,
+    /// First byte of the key or value, counted after a byte-order mark.
+    pub start: usize,
+    /// One past the last byte.
+    pub end: usize,
+    /// The JSON path, such as `shaders[1].properties.radius`; empty at the root.
+    pub path: String,
+}
+
+impl Place {
+    /// The file as a whole.
+    pub fn of_file(file: &str) -> Self {
+        Self {
+            file: file.into(),
+            line: 0,
+            column: 0,
+            start: 0,
+            end: 0,
+            path: String::new(),
+        }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.file)?;
+        if self.line > 0 {
+            write!(f, ":{}:{}", self.line, self.column)?;
+        }
+        if self.path.is_empty() {
+            Ok(())
+        } else {
+            write!(f, " ({})", self.path)
+        }
+    }
+}
+
+/// What is wrong, without the place.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Problem {
+    /// The file cannot be read at all.
+    #[error("{0}")]
+    Unreadable(String),
+    /// The text is not UTF-8.
+    #[error("this is not UTF-8 text: save the file as UTF-8")]
+    NotUtf8,
+    /// The text is not JSON.
+    #[error("{0}")]
+    Syntax(String),
+    /// The same key twice in one object.
+    #[error("duplicate key {}: it is already at {line}:{column}", quote(.key))]
+    DuplicateKey {
+        /// The key.
+        key: String,
+        /// Line of the first one.
+        line: u32,
+        /// Column of the first one.
+        column: u32,
+    },
+    /// A key that nothing knows.
+    #[error("{owner} has no {}{hint}", quote(.key))]
+    UnknownKey {
+        /// Whose key it would be, such as `camera` or `shader "toon"`.
+        owner: String,
+        /// The key as written.
+        key: String,
+        /// Nearest key and all keys.
+        hint: Hint,
+    },
+    /// A key that must be there.
+    #[error("{owner} needs {}{hint}", quote(.key))]
+    MissingKey {
+        /// Who needs it.
+        owner: String,
+        /// The key.
+        key: &'static str,
+        /// What it may be.
+        hint: Hint,
+    },
+    /// A value of another JSON type, or a list of another length.
+    #[error("{} must be {expected}, not {found}", quote(.name))]
+    WrongType {
+        /// The key.
+        name: String,
+        /// What is expected, such as `a whole number`.
+        expected: String,
+        /// What is there, such as `the text "four"`.
+        found: String,
+    },
+    /// A number outside what its parameter allows.
+    #[error("{} is {value}, but must {allowed}", quote(.name))]
+    OutOfRange {
+        /// The key.
+        name: String,
+        /// The value as read.
+        value: f64,
+        /// The range and its unit, such as `lie in 1 to 179 degrees`.
+        allowed: String,
+    },
+    /// A text that is none of the choices.
+    #[error("{} cannot be {}{hint}", quote(.name), quote(.value))]
+    NotAChoice {
+        /// The key.
+        name: String,
+        /// The text as written.
+        value: String,
+        /// Nearest choice and all choices.
+        hint: Hint,
+    },
+    /// A name that is neither in `shaders` nor registered.
+    #[error("no {what} is called {}{hint}", quote(.name))]
+    UnknownName {
+        /// `shader` or `post effect`.
+        what: &'static str,
+        /// The name as written.
+        name: String,
+        /// Nearest name and all names.
+        hint: Hint,
+    },
+    /// A post effect where a shader of objects is due.
+    #[error("{} is a post effect, not a shader of objects: list it in mapping.post_effects{hint}", quote(.name))]
+    EffectAsShader {
+        /// The name as written.
+        name: String,
+        /// The shaders that may stand here.
+        hint: Hint,
+    },
+    /// A shader of objects where a post effect is due.
+    #[error("{} is a shader of objects, not a post effect{hint}", quote(.name))]
+    ShaderAsEffect {
+        /// The name as written.
+        name: String,
+        /// The effects that may stand here.
+        hint: Hint,
+    },
+    /// A shader entry with nothing to refer to it by.
+    #[error(
+        "this shader entry has neither \"name\" nor \"shader\", so nothing can use it: name it or remove it"
+    )]
+    NamelessShader,
+    /// Two entries of `shaders` with one name.
+    #[error("a shader called {} is already at {line}:{column}", quote(.name))]
+    DuplicateName {
+        /// The name.
+        name: String,
+        /// Line of the first one.
+        line: u32,
+        /// Column of the first one.
+        column: u32,
+    },
+    /// A text that is no colour.
+    #[error("{} is {found}, which is no colour: write [r, g, b] or [r, g, b, a] in 0 to 255, \"#rrggbb\" or a CSS name{hint}", quote(.name))]
+    BadColor {
+        /// The key.
+        name: String,
+        /// What is there.
+        found: String,
+        /// Nearest name.
+        hint: Hint,
+    },
+    /// A text that is no length.
+    #[error("{} is {}, which is no length: write a number (radii of the scene), \"2pt\", \"3r\", \"1.5A\" or \"2mm\"", quote(.name), quote(.value))]
+    BadLength {
+        /// The key.
+        name: String,
+        /// The text as written.
+        value: String,
+    },
+    /// A key of `mapping` that is no selector.
+    #[error("selector {}: {reason}{hint}", quote(.text))]
+    BadSelector {
+        /// The selector as written.
+        text: String,
+        /// What is wrong with it.
+        reason: String,
+        /// Nearest word and all words.
+        hint: Hint,
+    },
+    /// A base file that cannot be used.
+    #[error("cannot extend {}: {reason}", quote(.base))]
+    Extends {
+        /// The base as written.
+        base: String,
+        /// Why not.
+        reason: String,
+    },
+    /// Values that are fine one by one but have no meaning together.
+    #[error("{0}")]
+    Meaningless(&'static str),
+}
+
+/// One mistake.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{place}: {problem}")]
+pub struct Mistake {
+    /// Where.
+    pub place: Place,
+    /// What.
+    pub problem: Problem,
+}
+
+/// Everything that is wrong with a style; never empty when returned.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Mistakes {
+    /// The mistakes, file by file in the order of the text.
+    pub list: Vec<Mistake>,
+    /// How many more there are than the list holds.
+    pub unlisted: usize,
+    /// The files that were read, the style first, then its bases: what to watch for a correction.
+    pub files: Vec<PathBuf>,
+}
+
+impl Mistakes {
+    /// One mistake alone.
+    pub fn one(place: Place, problem: Problem) -> Self {
+        Self {
+            list: vec![Mistake { place, problem }],
+            ..Self::default()
+        }
+    }
+
+    /// Whether nothing is wrong.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// Adds one; the place is asked for only if the mistake is listed.
+    pub(super) fn push(&mut self, place: impl FnOnce() -> Place, problem: Problem) {
+        if self.list.len() < MOST_LISTED {
+            self.list.push(Mistake {
+                place: place(),
+                problem,
+            });
+        } else {
+            self.unlisted += 1;
+        }
+    }
+}
+
+impl fmt::Display for Mistakes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, mistake) in self.list.iter().enumerate() {
+            let line_break = if i == 0 { "" } else { "\n" };
+            write!(f, "{line_break}{mistake}")?;
+        }
+        if self.unlisted > 0 {
+            write!(f, "\nand {} more", self.unlisted)?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Mistakes {}
+
+/// What a style asks for and does not get, though it loads.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Notice {
+    /// A shader of the contract that this version does not draw.
+    #[error("shader {} is not drawn by this version yet: its objects are drawn with \"{instead}\"", quote(.name))]
+    ShaderNotDrawn {
+        /// The shader.
+        name: String,
+        /// What stands in.
+        instead: &'static str,
+    },
+    /// A post effect of the contract that this version does not draw.
+    #[error("post effect {} is not drawn by this version yet: it is left out", quote(.name))]
+    EffectNotDrawn {
+        /// The effect.
+        name: String,
+    },
+    /// A property of the contract that this version does not draw.
+    #[error("{} is not drawn by this version yet: it changes nothing", quote(.name))]
+    PropertyNotDrawn {
+        /// The property.
+        name: String,
+    },
+    /// A type of objects that this version does not draw.
+    #[error("objects of type {} are not drawn by this version yet", quote(.name))]
+    TypeNotDrawn {
+        /// The type.
+        name: &'static str,
+    },
+    /// A selector that matches nothing of the scene. Only who knows the scene can tell.
+    #[error("selector {} matches nothing in this scene{hint}", quote(.selector))]
+    MatchesNothing {
+        /// The selector as written.
+        selector: String,
+        /// The nearest names that the scene has.
+        hint: Hint,
+    },
+}
+
+/// One warning.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{place}: warning: {notice}")]
+pub struct Warning {
+    /// Where.
+    pub place: Place,
+    /// What.
+    pub notice: Notice,
+}

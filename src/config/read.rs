@@ -1,0 +1,321 @@
+//! Reading parsed values as a parameter table asks, and collecting what is wrong with them.
+
+use super::color::{BaseColor, Srgba};
+use super::error::{Mistakes, Notice, Place, Problem, Warning};
+use super::hint::{Hint, quote};
+use super::length::Length;
+use super::param::{Kind, Param, Value};
+use super::source::Texts;
+use super::syntax::{Member, Node, Span, Tree};
+use super::values::Values;
+
+/// A problem and the value it lies in.
+type Wrong = (Span, Problem);
+
+/// What goes through a style: its texts, and what was found so far.
+pub(super) struct Reader<'a> {
+    pub(super) texts: &'a Texts,
+    pub(super) mistakes: Mistakes,
+    pub(super) warnings: Vec<Warning>,
+}
+
+impl Reader<'_> {
+    /// Notes a mistake.
+    pub(super) fn wrong(&mut self, span: Span, problem: Problem) {
+        let texts = self.texts;
+        self.mistakes.push(|| texts.place(span), problem);
+    }
+
+    /// Notes a warning, once for each text of it.
+    pub(super) fn warn(&mut self, place: Place, notice: Notice) {
+        if self.warnings.iter().all(|warning| warning.notice != notice) {
+            self.warnings.push(Warning { place, notice });
+        }
+    }
+
+    /// The members of an object; anything else is a mistake and counts as an empty object.
+    pub(super) fn object<'n>(&mut self, name: &str, node: &'n Node) -> &'n [Member] {
+        match &node.value {
+            Tree::Object(members) => members,
+            _ => {
+                self.wrong(node.span, wrong_type(name, "an object", node));
+                &[]
+            }
+        }
+    }
+
+    /// The items of a list; anything else is a mistake and counts as an empty list.
+    pub(super) fn list<'n>(&mut self, name: &str, node: &'n Node) -> &'n [Node] {
+        match &node.value {
+            Tree::List(items) => items,
+            _ => {
+                self.wrong(node.span, wrong_type(name, "a list", node));
+                &[]
+            }
+        }
+    }
+
+    /// A text; anything else is a mistake.
+    pub(super) fn text<'n>(&mut self, name: &str, node: &'n Node) -> Option<&'n str> {
+        let text = node.text();
+        if text.is_none() {
+            self.wrong(node.span, wrong_type(name, "a text", node));
+        }
+        text
+    }
+
+    /// The values of a table: what the members give, and defaults for the rest. Unknown keys are mistakes, said of
+    /// `owner`, such as `camera`.
+    pub(super) fn table(
+        &mut self,
+        owner: &str,
+        members: &[Member],
+        params: &'static [Param],
+    ) -> Values {
+        let mut values = Values::defaults(params);
+        for member in members {
+            let Some(index) = params.iter().position(|param| param.name == member.key) else {
+                let hint = Hint::new(
+                    &member.key,
+                    params.iter().filter(|p| p.drawn).map(|param| param.name),
+                );
+                self.unknown_key(owner, member, hint);
+                continue;
+            };
+            self.set(&mut values, index, &member.value);
+        }
+        values
+    }
+
+    /// Reads one parameter of a table.
+    pub(super) fn set(&mut self, values: &mut Values, index: usize, node: &Node) {
+        let param = &values.params()[index];
+        match read(param, node) {
+            Ok(value) => values.set(index, value, self.texts.place(node.span)),
+            Err((span, problem)) => self.wrong(span, problem),
+        }
+        if !param.drawn {
+            self.warn(
+                self.texts.place(node.span),
+                Notice::PropertyNotDrawn {
+                    name: param.name.to_owned(),
+                },
+            );
+        }
+    }
+
+    /// Notes a key that nothing knows.
+    pub(super) fn unknown_key(&mut self, owner: &str, member: &Member, hint: Hint) {
+        let problem = Problem::UnknownKey {
+            owner: owner.to_owned(),
+            key: member.key.clone(),
+            hint,
+        };
+        self.wrong(member.key_span, problem);
+    }
+}
+
+/// A value of another type than is due.
+pub(super) fn wrong_type(name: &str, expected: &str, node: &Node) -> Problem {
+    Problem::WrongType {
+        name: name.to_owned(),
+        expected: expected.to_owned(),
+        found: node.describe(),
+    }
+}
+
+/// Reads one value as its parameter asks.
+fn read(param: &Param, node: &Node) -> Result<Value, Wrong> {
+    if node.value == Tree::Null && param.default == super::param::Default::Unset {
+        return Ok(Value::Unset);
+    }
+    match param.kind {
+        Kind::Number => number(param, node, "a number").map(Value::Number),
+        Kind::Count => count(param, node).map(Value::Count),
+        Kind::Length => length(param, node).map(Value::Length),
+        Kind::ChoiceOrLength(of) => choice_or_length(param, of, node),
+        Kind::Color => color(param, &[], node).map(Value::Color),
+        Kind::BaseColor => match node.text().and_then(BaseColor::from_name) {
+            Some(source) => Ok(Value::BaseColor(source)),
+            None => color(param, &BaseColor::NAMES, node)
+                .map(|color| Value::BaseColor(BaseColor::Color(color))),
+        },
+        Kind::Choice(of) => choice(param, of, node).map(Value::Choice),
+        Kind::Boolean | Kind::BooleanOrText => boolean(param, node).map(Value::Boolean),
+        Kind::Numbers { len } => numbers(param, len, node).map(Value::Numbers),
+        Kind::Vector => vector(param, node).map(Value::Vector),
+    }
+}
+
+fn out_of_range(param: &Param, value: f64, allowed: String) -> Problem {
+    Problem::OutOfRange {
+        name: param.name.to_owned(),
+        value,
+        allowed,
+    }
+}
+
+fn number(param: &Param, node: &Node, expected: &str) -> Result<f64, Wrong> {
+    match node.value {
+        Tree::Number(n) if param.allows(n) => Ok(n),
+        Tree::Number(n) => Err((node.span, out_of_range(param, n, param.allowed()))),
+        _ => Err((node.span, wrong_type(param.name, expected, node))),
+    }
+}
+
+fn count(param: &Param, node: &Node) -> Result<u32, Wrong> {
+    const EXPECTED: &str = "a whole number, 0 or more";
+    match node.value {
+        Tree::Number(n) if n.fract() != 0.0 || n < 0.0 => {
+            Err((node.span, wrong_type(param.name, EXPECTED, node)))
+        }
+        // Allowed numbers are at most `LARGEST`, which u32 holds.
+        _ => number(param, node, EXPECTED).map(|n| n as u32),
+    }
+}
+
+fn length(param: &Param, node: &Node) -> Result<Length, Wrong> {
+    let Some(text) = node.text() else {
+        let expected =
+            "a number (radii of the scene) or a text such as \"2pt\", \"3r\", \"1.5A\" or \"2mm\"";
+        return number(param, node, expected).map(Length::Radii);
+    };
+    let bad = || Problem::BadLength {
+        name: param.name.to_owned(),
+        value: text.to_owned(),
+    };
+    let length: Length = text.parse().map_err(|_| (node.span, bad()))?;
+    let (lowest, highest) = param.length_bounds(length);
+    if (lowest..=highest).contains(&length.number()) {
+        return Ok(length);
+    }
+    let allowed = format!("lie in {lowest} to {highest} {}", length.unit());
+    Err((node.span, out_of_range(param, length.number(), allowed)))
+}
+
+fn choice_or_length(
+    param: &Param,
+    of: &'static [&'static str],
+    node: &Node,
+) -> Result<Value, Wrong> {
+    let word = node
+        .text()
+        .filter(|text| !text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | '-')));
+    match word {
+        Some(text) => choice(param, of, node).map(Value::Choice).map_err(|_| {
+            let mut hint = Hint::new(text, of.iter().copied());
+            hint.allowed.push("a length".to_owned());
+            (node.span, not_a_choice(param, text, hint))
+        }),
+        None => length(param, node).map(Value::Length),
+    }
+}
+
+fn choice(param: &Param, of: &'static [&'static str], node: &Node) -> Result<usize, Wrong> {
+    let Some(text) = node.text() else {
+        let expected = format!(
+            "one of the texts {}",
+            of.iter()
+                .map(|word| quote(word))
+                .collect::<Vec<_>>()
+                .join(", ")
+        );
+        return Err((node.span, wrong_type(param.name, &expected, node)));
+    };
+    of.iter().position(|word| *word == text).ok_or_else(|| {
+        let hint = Hint::new(text, of.iter().copied());
+        (node.span, not_a_choice(param, text, hint))
+    })
+}
+
+fn not_a_choice(param: &Param, text: &str, hint: Hint) -> Problem {
+    Problem::NotAChoice {
+        name: param.name.to_owned(),
+        value: text.to_owned(),
+        hint,
+    }
+}
+
+fn boolean(param: &Param, node: &Node) -> Result<bool, Wrong> {
+    match (&node.value, param.kind) {
+        (Tree::Bool(value), _) => Ok(*value),
+        // [Prost2016, Table 1] writes "orthographic": "true", broken over two lines in print.
+        (Tree::Text(text), Kind::BooleanOrText) if text.trim() == "true" => Ok(true),
+        (Tree::Text(text), Kind::BooleanOrText) if text.trim() == "false" => Ok(false),
+        _ => Err((node.span, wrong_type(param.name, "true or false", node))),
+    }
+}
+
+/// The components of a colour are bytes as in [Prost2016, Listing 1].
+fn color(param: &Param, other_words: &[&'static str], node: &Node) -> Result<Srgba, Wrong> {
+    let bad = |hint| Problem::BadColor {
+        name: param.name.to_owned(),
+        found: node.describe(),
+        hint,
+    };
+    match &node.value {
+        Tree::Text(text) => Srgba::parse(text).ok_or_else(|| {
+            let near = Hint::nearest_of(
+                text,
+                super::color::css_names().chain(other_words.iter().copied()),
+            );
+            (node.span, bad(near))
+        }),
+        Tree::List(items) if items.len() == 3 || items.len() == 4 => {
+            let mut rgba = [1.0; 4];
+            for (component, item) in rgba.iter_mut().zip(items) {
+                let Tree::Number(n) = item.value else {
+                    return Err((
+                        item.span,
+                        wrong_type(param.name, "a colour of numbers in 0 to 255", item),
+                    ));
+                };
+                if !(0.0..=255.0).contains(&n) {
+                    return Err((
+                        item.span,
+                        out_of_range(param, n, "lie in 0 to 255".to_owned()),
+                    ));
+                }
+                *component = (n / 255.0) as f32;
+            }
+            Ok(Srgba { rgba })
+        }
+        _ => Err((node.span, bad(Hint::NONE))),
+    }
+}
+
+/// [Prost2016, Table 1] nests its one list of `layers` in another.
+fn numbers(param: &Param, len: usize, node: &Node) -> Result<Vec<f64>, Wrong> {
+    let expected = match len {
+        0 => "a list of numbers".to_owned(),
+        len => format!("a list of {len} numbers"),
+    };
+    let mut inner = node;
+    if let Tree::List(items) = &node.value
+        && let [only] = items.as_slice()
+        && matches!(only.value, Tree::List(_))
+    {
+        inner = only;
+    }
+    match &inner.value {
+        Tree::List(items) if len == 0 || items.len() == len => items
+            .iter()
+            .map(|item| number(param, item, &expected))
+            .collect(),
+        _ => Err((inner.span, wrong_type(param.name, &expected, inner))),
+    }
+}
+
+fn vector(param: &Param, node: &Node) -> Result<[f64; 3], Wrong> {
+    const EXPECTED: &str = "a list of 3 numbers";
+    match &node.value {
+        Tree::List(items) if items.len() == 3 => {
+            let mut vector = [0.0; 3];
+            for (component, item) in vector.iter_mut().zip(items) {
+                *component = number(param, item, EXPECTED)?;
+            }
+            Ok(vector)
+        }
+        _ => Err((node.span, wrong_type(param.name, EXPECTED, node))),
+    }
+}

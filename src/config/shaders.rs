@@ -1,0 +1,358 @@
+//! `shaders` and the names that `mapping` gives to them.
+
+use std::collections::HashMap;
+
+use super::catalog::{Catalog, CatalogEntry, Role};
+use super::error::{Notice, Place, Problem};
+use super::hint::{Hint, quote};
+use super::param::Param;
+use super::read::{Reader, wrong_type};
+use super::syntax::{Member, Node, Tree};
+use super::values::Values;
+
+/// The keys of one entry of `shaders`.
+const KEYS: [&str; 3] = ["name", "shader", "properties"];
+
+/// What every shader of objects has, so that a stand-in can keep it.
+const SHARED: [&str; 2] = ["base_color", "opacity"];
+
+/// Most names of a file that a message lists.
+const MOST_NAMES: usize = 20;
+
+/// A shader or post effect with its properties: one entry of `shaders`, or a registered one with its defaults.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShaderUse {
+    /// The name that `mapping` uses.
+    pub name: String,
+    /// The registered shader that draws.
+    pub shader: &'static str,
+    /// The registered shader that the file asks for, if this version does not draw it and `shader` stands in.
+    pub stands_in_for: Option<&'static str>,
+    /// What it is for.
+    pub role: Role,
+    /// Whether this version draws it; only a post effect may not be.
+    pub drawn: bool,
+    /// Its properties.
+    pub values: Values,
+    /// Its entry; `None` if the file declares none.
+    pub place: Option<Place>,
+}
+
+/// The shaders of a style while it is read.
+pub(super) struct Shaders<'a> {
+    catalog: Catalog<'a>,
+    /// All that are declared, then all that are used undeclared.
+    pub(super) uses: Vec<ShaderUse>,
+    /// `None`: declared, but so wrong that it cannot be used; what refers to it is no further mistake.
+    declared: HashMap<String, Option<usize>>,
+    undeclared: HashMap<&'static str, usize>,
+}
+
+impl<'a> Shaders<'a> {
+    pub(super) fn new(catalog: Catalog<'a>) -> Self {
+        Self {
+            catalog,
+            uses: Vec::new(),
+            declared: HashMap::new(),
+            undeclared: HashMap::new(),
+        }
+    }
+
+    /// Reads the list `shaders`.
+    pub(super) fn declare(&mut self, reader: &mut Reader<'_>, node: &Node) {
+        let mut first = HashMap::new();
+        for entry in reader.list("shaders", node) {
+            let Some(name) = self.declare_one(reader, entry) else {
+                continue;
+            };
+            let at = entry.get("name").unwrap_or(entry).span;
+            let earlier = *first.entry(name.clone()).or_insert(at);
+            if earlier != at {
+                let (line, column) = reader.texts.line_column(earlier);
+                reader.wrong(at, Problem::DuplicateName { name, line, column });
+            }
+        }
+    }
+
+    /// Reads one entry and answers its name, if it has one.
+    fn declare_one(&mut self, reader: &mut Reader<'_>, entry: &Node) -> Option<String> {
+        let members = match &entry.value {
+            Tree::Object(members) => members,
+            _ => {
+                reader.wrong(
+                    entry.span,
+                    wrong_type("shaders", "a list of objects", entry),
+                );
+                return None;
+            }
+        };
+        for member in members
+            .iter()
+            .filter(|member| !KEYS.contains(&member.key.as_str()))
+        {
+            reader.unknown_key("a shader entry", member, Hint::new(&member.key, KEYS));
+        }
+        let (name, shader) = (entry.get("name"), entry.get("shader"));
+        if name.is_none() && shader.is_none() {
+            reader.wrong(entry.span, Problem::NamelessShader);
+            return None;
+        }
+        let name = match name {
+            Some(name) => reader.text("name", name).map(str::to_owned),
+            None => {
+                missing(reader, entry, "name", Hint::NONE);
+                None
+            }
+        };
+        let registered = match shader {
+            Some(shader) => self.registered(reader, shader),
+            None => {
+                missing(
+                    reader,
+                    entry,
+                    "shader",
+                    Hint::list(self.catalog.drawn_names(None)),
+                );
+                None
+            }
+        };
+        let properties = match entry.get("properties") {
+            Some(properties) => reader.object("properties", properties),
+            None => &[],
+        };
+        let used =
+            registered.map(|found| self.use_of(reader, found, entry, name.as_deref(), properties));
+        let name = name?;
+        if !self.declared.contains_key(&name) {
+            let index = used.map(|used| self.push(used));
+            self.declared.insert(name.clone(), index);
+        }
+        Some(name)
+    }
+
+    fn registered(&self, reader: &mut Reader<'_>, shader: &Node) -> Option<&'a CatalogEntry> {
+        let name = reader.text("shader", shader)?;
+        let found = self.catalog.get(name);
+        if found.is_none() {
+            let all = self.catalog.shaders.iter().map(|entry| entry.name);
+            let hint = Hint::with_more(name, self.catalog.drawn_names(None), all);
+            reader.wrong(
+                shader.span,
+                Problem::UnknownName {
+                    what: "shader",
+                    name: name.to_owned(),
+                    hint,
+                },
+            );
+        }
+        found
+    }
+
+    fn use_of(
+        &self,
+        reader: &mut Reader<'_>,
+        entry: &CatalogEntry,
+        node: &Node,
+        name: Option<&str>,
+        properties: &[Member],
+    ) -> ShaderUse {
+        let place = reader.texts.place(node.get("shader").unwrap_or(node).span);
+        let mut used = self.with_defaults(reader, entry, place);
+        used.name = name.unwrap_or(entry.name).to_owned();
+        used.place = Some(reader.texts.place(node.span));
+        if entry.drawn {
+            used.values = reader.table(
+                &format!("shader {}", quote(entry.name)),
+                properties,
+                entry.params,
+            );
+            return used;
+        }
+        // Its properties are not known yet: take those that what stands in shares with it, and any others as they are.
+        for member in properties
+            .iter()
+            .filter(|member| SHARED.contains(&member.key.as_str()))
+        {
+            if let Some(index) = used
+                .values
+                .params()
+                .iter()
+                .position(|param| param.name == member.key)
+            {
+                reader.set(&mut used.values, index, &member.value);
+            }
+        }
+        used
+    }
+
+    /// A registered shader with its defaults, or what stands in for it; `place` asks for it.
+    fn with_defaults(
+        &self,
+        reader: &mut Reader<'_>,
+        entry: &CatalogEntry,
+        place: Place,
+    ) -> ShaderUse {
+        let name = entry.name.to_owned();
+        let basic = self.catalog.basic();
+        let no_params: &'static [Param] = &[];
+        let (drawing, params, stands_in_for) = match (entry.drawn, entry.role) {
+            (true, _) => (entry.name, entry.params, None),
+            (false, Role::Object) => {
+                reader.warn(
+                    place,
+                    Notice::ShaderNotDrawn {
+                        name: name.clone(),
+                        instead: basic.name,
+                    },
+                );
+                (basic.name, basic.params, Some(entry.name))
+            }
+            (false, Role::PostEffect) => {
+                reader.warn(place, Notice::EffectNotDrawn { name: name.clone() });
+                (entry.name, no_params, None)
+            }
+        };
+        ShaderUse {
+            name,
+            shader: drawing,
+            stands_in_for,
+            role: entry.role,
+            drawn: entry.drawn || entry.role == Role::Object,
+            values: Values::defaults(params),
+            place: None,
+        }
+    }
+
+    fn push(&mut self, used: ShaderUse) -> usize {
+        self.uses.push(used);
+        self.uses.len() - 1
+    }
+
+    /// What a name in `mapping` refers to: an entry of `shaders`, else a registered shader with its defaults.
+    /// `key` is where it stands.
+    pub(super) fn resolve(
+        &mut self,
+        reader: &mut Reader<'_>,
+        key: &str,
+        node: &Node,
+        role: Role,
+    ) -> Option<usize> {
+        let expected = match role {
+            Role::Object => "the name of a shader, or null to hide",
+            Role::PostEffect => "a list of names of post effects",
+        };
+        let Some(name) = node.text() else {
+            reader.wrong(node.span, wrong_type(key, expected, node));
+            return None;
+        };
+        if let Some(index) = self.declared.get(name) {
+            let index = (*index)?;
+            return self
+                .check_role(reader, node, name, self.uses[index].role, role)
+                .then_some(index);
+        }
+        let Some(entry) = self.catalog.get(name) else {
+            let what = if role == Role::Object {
+                "shader"
+            } else {
+                "post effect"
+            };
+            let hint = self.names(name, role);
+            reader.wrong(
+                node.span,
+                Problem::UnknownName {
+                    what,
+                    name: name.to_owned(),
+                    hint,
+                },
+            );
+            return None;
+        };
+        if !self.check_role(reader, node, name, entry.role, role) {
+            return None;
+        }
+        let place = reader.texts.place(node.span);
+        Some(self.undeclared_use(reader, entry, place))
+    }
+
+    /// What draws everything that nothing selects: `basic`, of the file if it declares one.
+    pub(super) fn basic(&mut self, reader: &mut Reader<'_>) -> usize {
+        let basic = self.catalog.basic();
+        match self.declared.get(basic.name) {
+            Some(Some(index)) if self.uses[*index].role == Role::Object => *index,
+            _ => self.undeclared_use(reader, basic, Place::of_file("")),
+        }
+    }
+
+    fn undeclared_use(
+        &mut self,
+        reader: &mut Reader<'_>,
+        entry: &CatalogEntry,
+        place: Place,
+    ) -> usize {
+        if let Some(index) = self.undeclared.get(entry.name) {
+            return *index;
+        }
+        let used = self.with_defaults(reader, entry, place);
+        let index = self.push(used);
+        self.undeclared.insert(entry.name, index);
+        index
+    }
+
+    fn check_role(
+        &self,
+        reader: &mut Reader<'_>,
+        node: &Node,
+        name: &str,
+        is: Role,
+        due: Role,
+    ) -> bool {
+        if is == due {
+            return true;
+        }
+        let (hint, name) = (
+            Hint::list(self.names(name, due).allowed.iter().map(String::as_str)),
+            name.to_owned(),
+        );
+        let problem = match due {
+            Role::Object => Problem::EffectAsShader { name, hint },
+            Role::PostEffect => Problem::ShaderAsEffect { name, hint },
+        };
+        reader.wrong(node.span, problem);
+        false
+    }
+
+    /// What may stand where `name` stands: entries of the file in their order, then what is registered and drawn.
+    fn names(&self, name: &str, role: Role) -> Hint {
+        let declared = self
+            .uses
+            .iter()
+            .filter(|used| used.place.is_some() && used.role == role);
+        let declared: Vec<&str> = declared.map(|used| used.name.as_str()).collect();
+        let of_role = self
+            .catalog
+            .shaders
+            .iter()
+            .filter(|entry| entry.role == role);
+        let (drawn, not_yet): (Vec<_>, Vec<_>) = of_role.partition(|entry| entry.drawn);
+        let names = |entry: &&CatalogEntry| -> &str { entry.name };
+        let undeclared = drawn
+            .iter()
+            .map(names)
+            .filter(|name| !declared.contains(name));
+        let listed = declared.iter().copied().take(MOST_NAMES).chain(undeclared);
+        let unlisted = declared.iter().copied().skip(MOST_NAMES);
+        Hint::with_more(name, listed, unlisted.chain(not_yet.iter().map(names)))
+    }
+}
+
+fn missing(reader: &mut Reader<'_>, entry: &Node, key: &'static str, hint: Hint) {
+    reader.wrong(
+        entry.span,
+        Problem::MissingKey {
+            owner: "this shader entry".to_owned(),
+            key,
+            hint,
+        },
+    );
+}

@@ -1,0 +1,276 @@
+//! A style, resolved: every name bound, every property with a value, ready for an engine.
+
+use std::path::PathBuf;
+
+use super::camera::Camera;
+use super::catalog::{Catalog, Role};
+use super::error::{Mistakes, Notice, Place, Problem, Warning};
+use super::extends::Merged;
+use super::geometry::{self, Geometry};
+use super::hint::Hint;
+use super::light::Light;
+use super::param::Param;
+use super::read::{Reader, wrong_type};
+use super::selector::{Attribute, AttributeSet, ObjectKind, Selector};
+use super::shaders::{ShaderUse, Shaders};
+use super::source::Texts;
+use super::syntax::{Node, Tree};
+use super::transparency::{self, Transparency};
+use super::values::Values;
+
+/// The version of style files that this program reads.
+pub const VERSION: u32 = 1;
+
+/// The keys of a style file.
+pub const KEYS: [&str; 9] = [
+    "$schema",
+    "version",
+    "extends",
+    "camera",
+    "geometry",
+    "mapping",
+    "shaders",
+    "lights",
+    "transparency",
+];
+
+/// The key of `mapping` that lists post effects.
+const POST_EFFECTS: &str = "post_effects";
+
+/// One line of `mapping`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rule {
+    /// Which objects.
+    pub selector: Selector,
+    /// What draws them, as an index into [`Style::shaders`]; `None` hides them.
+    pub target: Option<usize>,
+    /// Where it is written.
+    pub place: Place,
+}
+
+/// A style without mistakes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Style {
+    /// Projection, background, framing.
+    pub camera: Camera,
+    /// How large atoms and bonds are.
+    pub geometry: Geometry,
+    /// The rules, the one that wins first: the first that matches an object decides.
+    pub mapping: Vec<Rule>,
+    /// Every shader that is declared or used; rules, post effects and `basic` are indices into it.
+    pub shaders: Vec<ShaderUse>,
+    /// What draws the objects that no rule matches.
+    pub basic: usize,
+    /// The post effects that this version draws, in the order of the file.
+    pub post_effects: Vec<usize>,
+    /// The lights.
+    pub lights: Vec<Light>,
+    /// How fragments that let light through are put in order.
+    pub transparency: Transparency,
+    /// What the file asks for and does not get.
+    pub warnings: Vec<Warning>,
+    /// The files it was read from, itself first, then its bases: what to watch for changes.
+    pub files: Vec<PathBuf>,
+}
+
+impl Style {
+    /// What draws an object, as an index into [`Style::shaders`]; `None` hides it.
+    /// A connector is asked for twice, with the attributes of either atom.
+    pub fn shader_of<'a>(
+        &self,
+        kind: ObjectKind,
+        attribute: &dyn Fn(Attribute) -> Option<&'a str>,
+    ) -> Option<usize> {
+        match self.rule_of(kind, attribute) {
+            Some(rule) => rule.target,
+            None => Some(self.basic),
+        }
+    }
+
+    /// The rule that decides about an object; `None`: no rule matches it.
+    pub fn rule_of<'a>(
+        &self,
+        kind: ObjectKind,
+        attribute: &dyn Fn(Attribute) -> Option<&'a str>,
+    ) -> Option<&Rule> {
+        self.mapping
+            .iter()
+            .find(|rule| rule.selector.matches(kind, attribute))
+    }
+
+    /// The attributes that decide about objects of a type: objects that are equal in these are drawn alike, so that
+    /// an engine needs to ask once for each combination and not once for each of 100,000 atoms.
+    pub fn attributes_used(&self, kind: ObjectKind) -> AttributeSet {
+        let mut used = AttributeSet::default();
+        for rule in self
+            .mapping
+            .iter()
+            .filter(|rule| rule.selector.is_for(kind))
+        {
+            rule.selector
+                .attributes()
+                .iter()
+                .for_each(|attribute| used.insert(attribute));
+        }
+        used
+    }
+}
+
+/// Resolves a merged tree.
+pub(super) fn resolve(
+    texts: &Texts,
+    merged: Merged,
+    catalog: &Catalog<'_>,
+) -> Result<Style, Mistakes> {
+    let mut reader = Reader {
+        texts,
+        mistakes: merged.mistakes,
+        warnings: Vec::new(),
+    };
+    let root = &merged.root;
+    for member in reader.object("style", root) {
+        if !KEYS.contains(&member.key.as_str()) {
+            reader.unknown_key("a style", member, Hint::new(&member.key, KEYS));
+        }
+    }
+    if let Some(schema) = root.get("$schema") {
+        reader.text("$schema", schema);
+    }
+    let camera = match root.get("camera") {
+        Some(node) => Camera::read(&mut reader, node),
+        None => Camera::new(&Values::defaults(super::camera::PARAMS)),
+    };
+    let geometry = Geometry::new(&section(&mut reader, root, "geometry", geometry::PARAMS));
+    let transparency = Transparency::new(&section(
+        &mut reader,
+        root,
+        "transparency",
+        transparency::PARAMS,
+    ));
+    let lights = match root.get("lights") {
+        Some(node) => reader
+            .list("lights", node)
+            .iter()
+            .map(|light| Light::read(&mut reader, light))
+            .collect(),
+        None => Light::default_lights(),
+    };
+    let mut shaders = Shaders::new(*catalog);
+    if let Some(node) = root.get("shaders") {
+        shaders.declare(&mut reader, node);
+    }
+    let (mapping, post_effects) = match root.get("mapping") {
+        Some(node) => read_mapping(&mut reader, &mut shaders, catalog, node),
+        None => (Vec::new(), Vec::new()),
+    };
+    let basic = shaders.basic(&mut reader);
+    let Reader {
+        mut mistakes,
+        mut warnings,
+        ..
+    } = reader;
+    let order = |place: &Place| {
+        (
+            texts.0.iter().position(|text| text.name == place.file),
+            place.start,
+        )
+    };
+    if mistakes.is_empty() {
+        warnings.sort_by_key(|warning| order(&warning.place));
+        let (shaders, files) = (shaders.uses, merged.files);
+        Ok(Style {
+            camera,
+            geometry,
+            mapping,
+            shaders,
+            basic,
+            post_effects,
+            lights,
+            transparency,
+            warnings,
+            files,
+        })
+    } else {
+        mistakes.list.sort_by_key(|mistake| order(&mistake.place));
+        mistakes.files = merged.files;
+        Err(mistakes)
+    }
+}
+
+fn section(reader: &mut Reader<'_>, root: &Node, name: &str, params: &'static [Param]) -> Values {
+    match root.get(name) {
+        Some(node) => {
+            let members = reader.object(name, node);
+            reader.table(name, members, params)
+        }
+        None => Values::defaults(params),
+    }
+}
+
+fn read_mapping(
+    reader: &mut Reader<'_>,
+    shaders: &mut Shaders<'_>,
+    catalog: &Catalog<'_>,
+    node: &Node,
+) -> (Vec<Rule>, Vec<usize>) {
+    let mut rules = Vec::new();
+    let mut post_effects = Vec::new();
+    for member in reader.object("mapping", node) {
+        if member.key == POST_EFFECTS {
+            for item in reader.list(POST_EFFECTS, &member.value) {
+                post_effects.extend(shaders.resolve(reader, POST_EFFECTS, item, Role::PostEffect));
+            }
+            continue;
+        }
+        let selector =
+            Selector::parse(&member.key).map_err(|problem| reader.wrong(member.key_span, problem));
+        let target = match &member.value.value {
+            Tree::Null => None,
+            _ => match shaders.resolve(reader, &member.key, &member.value, Role::Object) {
+                Some(index) => Some(index),
+                None => continue,
+            },
+        };
+        let Ok(selector) = selector else { continue };
+        let place = reader.texts.place(member.key_span);
+        if let Some(kind) = selector.kind().filter(|kind| !catalog.kinds.contains(kind)) {
+            reader.warn(place.clone(), Notice::TypeNotDrawn { name: kind.name() });
+        }
+        rules.push(Rule {
+            selector,
+            target,
+            place,
+        });
+    }
+    // The later of two equal ranks wins: turn the order round, then sort without disturbing it.
+    rules.reverse();
+    rules.sort_by_key(|rule| std::cmp::Reverse(rule.selector.rank()));
+    post_effects.retain(|index| shaders.uses[*index].drawn);
+    (rules, post_effects)
+}
+
+/// Refuses a file of another version. Each file is asked, a base too.
+pub(super) fn check_version(root: &Node) -> Result<(), (super::syntax::Span, Problem)> {
+    let Some(node) = root.get("version") else {
+        return Ok(());
+    };
+    match node.value {
+        Tree::Number(n) if n == f64::from(VERSION) => Ok(()),
+        Tree::Number(value) => {
+            let allowed =
+                format!("be {VERSION}: this program reads no other version of style files");
+            Err((
+                node.span,
+                Problem::OutOfRange {
+                    name: "version".to_owned(),
+                    value,
+                    allowed,
+                },
+            ))
+        }
+        _ => Err((
+            node.span,
+            wrong_type("version", &format!("the number {VERSION}"), node),
+        )),
+    }
+}

@@ -1,0 +1,56 @@
+//! `transparency`: how fragments that let light through are put in order.
+
+use super::param::Param;
+use super::values::Values;
+
+/// The keys of `transparency`.
+pub const PARAMS: &[Param] = &[
+    Param::choice("method", &["auto", "bkb", "exact"], "auto")
+        .doc("auto takes the cheapest that is right for the scene."),
+    Param::count("k", 8)
+        .range(1.0, 64.0)
+        .unit("fragments")
+        .doc("Most fragments that are kept for each pixel."),
+    Param::count("memory_mb", 512)
+        .range(16.0, 65536.0)
+        .unit("MB")
+        .doc("Most memory that the fragments may take."),
+];
+
+/// How fragments are put in order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TransparencyMethod {
+    /// What is cheapest and right for the scene.
+    Auto,
+    /// Bucketed k-buffer.
+    Bkb,
+    /// All fragments, sorted.
+    Exact,
+}
+
+/// The transparency of a style.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Transparency {
+    /// How fragments are put in order.
+    pub method: TransparencyMethod,
+    /// Most fragments for each pixel.
+    pub k: u32,
+    /// Most memory for fragments, in MB.
+    pub memory_mb: u32,
+}
+
+impl Transparency {
+    /// The transparency that the values of [`PARAMS`] describe.
+    pub fn new(values: &Values) -> Self {
+        let methods = [
+            TransparencyMethod::Auto,
+            TransparencyMethod::Bkb,
+            TransparencyMethod::Exact,
+        ];
+        Self {
+            method: methods[values.choice_index("method")],
+            k: values.count("k"),
+            memory_mb: values.count("memory_mb"),
+        }
+    }
+}

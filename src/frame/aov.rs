@@ -1,0 +1,66 @@
+//! Geometry AOVs: depth, view-space normal and id of the nearest surface at each pixel's centre.
+
+use super::fullscreen;
+use super::visibility::{SceneBindings, Visibility};
+use crate::gpu::{Gpu, GpuError, Module};
+use crate::wgsl;
+
+/// RGB: view-space normal. A: depth, -1 where nothing is.
+pub const GEOMETRY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
+/// The pipeline of the geometry AOVs, once it is asked for.
+#[derive(Default)]
+pub struct Aov {
+    pipeline: Option<(wgpu::BindGroupLayout, wgpu::RenderPipeline)>,
+}
+
+impl Aov {
+    /// Draws the geometry of what `ids` holds. Builds the pipeline first, where it is not there.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] where the shader does not compile.
+    pub fn draw(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        visibility: &Visibility,
+        scene: &SceneBindings,
+        view_index: usize,
+        ids: &wgpu::TextureView,
+        target: &wgpu::TextureView,
+    ) -> Result<(), GpuError> {
+        if self.pipeline.is_none() {
+            let layout = fullscreen::layout(gpu, "aov", &[fullscreen::texture(wgpu::TextureSampleType::Uint)]);
+            let pipeline = fullscreen::pipeline(
+                gpu,
+                "aov",
+                &aov_module(),
+                ["aov_vertex", "aov_fragment"],
+                &[&visibility.layout, &layout],
+                GEOMETRY_FORMAT,
+            )?;
+            self.pipeline = Some((layout, pipeline));
+        }
+        let Some((layout, pipeline)) = &self.pipeline else { return Ok(()) };
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("aov"),
+            layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(ids) }],
+        });
+        let groups: &[(&wgpu::BindGroup, &[u32])] =
+            &[(&scene.group, &[SceneBindings::offset(view_index)]), (&group, &[])];
+        fullscreen::draw(encoder, "aov", pipeline, groups, target, None);
+        Ok(())
+    }
+}
+
+/// The WGSL of the geometry AOVs.
+pub fn aov_module() -> Module {
+    Module::new(&[
+        wgsl!("lib/view.wgsl"),
+        wgsl!("lib/objects.wgsl"),
+        wgsl!("lib/intersect.wgsl"),
+        wgsl!("lib/surface.wgsl"),
+        wgsl!("objects/aov.wgsl"),
+    ])
+}

@@ -1,0 +1,350 @@
+//! One frame, in order: shadow maps once, then for each sample visibility and shading, then resolve.
+//!
+//! A pass that nothing needs does not exist in that frame, and its pipeline and targets are never made.
+
+mod aov;
+mod fullscreen;
+mod lights;
+pub mod objects;
+mod resolve;
+mod shade;
+mod shadow;
+mod targets;
+mod view;
+mod visibility;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+pub use aov::aov_module;
+pub use lights::{Light, Lights, MAX_LIGHTS};
+use objects::{DrawList, Material, ObjectBuffers};
+pub use resolve::resolve_module;
+pub use shade::{Output, ShadeKey, shade_module};
+use shade::{Shade, ShadeInputs};
+pub use shadow::{MAX_SHADOWS, ShadowView, Shadows};
+use shadow::{ShadowMaps, ShadowPlan};
+use targets::Targets;
+pub use targets::TargetBytes;
+pub use view::{View, sample_offset_px};
+pub use visibility::visibility_module;
+use visibility::{DEPTH_FORMAT, ID_FORMAT, Visibility, VisibilityPass};
+
+use crate::gpu::{Gpu, GpuError, GpuStruct, PassTimer, PassTimes, StructInfo, read_texture};
+use crate::scene::{Camera, Lighting, Sphere};
+use crate::shading::SHADERS;
+
+/// Pictures of 8 bits a channel, sRGB values written by the shader.
+const OUTPUT_8: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// Pictures of 16 bits a channel; an integer format, since every adapter can draw to it.
+const OUTPUT_16: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Uint;
+
+/// Largest number of samples of one still.
+pub const MAX_SAMPLES: u32 = 4096;
+
+/// Samples of one submission to the device. Ours: below a second on a software adapter at 1080p.
+const SAMPLES_PER_SUBMISSION: usize = 8;
+
+/// Where samples add up: 32-bit floats, or 16-bit ones where the adapter cannot blend those.
+fn light_format(gpu: &Gpu) -> wgpu::TextureFormat {
+    if gpu.adds_float32() { wgpu::TextureFormat::Rgba32Float } else { wgpu::TextureFormat::Rgba16Float }
+}
+
+/// Materials of a style: what all share, and each shader's parameter sets.
+#[derive(Debug, Clone, Default)]
+pub struct Materials {
+    /// One for each material.
+    pub common: Vec<Material>,
+    /// Bytes of the parameter sets, by the shader's place in the registry.
+    pub params: BTreeMap<usize, Vec<u8>>,
+}
+
+impl Materials {
+    fn has_hulls(&self) -> bool {
+        self.common.iter().any(|material| material.hull_px + material.hull_world > 0.0)
+    }
+}
+
+/// What one still needs beside objects and materials.
+#[derive(Debug, Clone)]
+pub struct FrameInput<'a> {
+    /// The camera.
+    pub camera: &'a Camera,
+    /// The lights, in view space.
+    pub lighting: &'a Lighting,
+    /// What shadow maps must hold, in world space.
+    pub bounds: Sphere,
+    /// Premultiplied linear background; alpha 0 for a transparent picture.
+    pub background: [f32; 4],
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Samples a pixel.
+    pub samples: u32,
+    /// 16 bits a channel instead of 8.
+    pub wide: bool,
+}
+
+/// Linear float pictures of the geometry and light at pixel centres.
+pub struct Aovs {
+    /// View-space normal and depth (-1: nothing), four floats a pixel.
+    pub geometry: Vec<f32>,
+    /// Ids; 0: nothing.
+    pub ids: Vec<u32>,
+    /// Premultiplied linear colour, four floats a pixel.
+    pub color: Vec<f32>,
+}
+
+struct Contents {
+    objects: ObjectBuffers,
+    materials: wgpu::Buffer,
+    params: Vec<wgpu::Buffer>,
+    shaders: Vec<usize>,
+    hulls: bool,
+}
+
+/// Draws frames of one scene in one style.
+pub struct Renderer {
+    gpu: Arc<Gpu>,
+    visibility: Visibility,
+    shade: Shade,
+    resolve: resolve::Resolve,
+    aov: aov::Aov,
+    targets: Targets,
+    contents: Option<Contents>,
+    pipelines_built: u32,
+    last_times: PassTimes,
+}
+
+impl Renderer {
+    /// A renderer that has nothing to draw yet and has built nothing yet.
+    pub fn new(gpu: Arc<Gpu>) -> Renderer {
+        let visibility = Visibility::new(&gpu);
+        Renderer {
+            gpu,
+            visibility,
+            shade: Shade::default(),
+            resolve: resolve::Resolve::default(),
+            aov: aov::Aov::default(),
+            targets: Targets::default(),
+            contents: None,
+            pipelines_built: 0,
+            last_times: Vec::new(),
+        }
+    }
+
+    /// Replaces what is drawn. On an error the former contents stay.
+    ///
+    /// # Errors
+    /// [`GpuError::TooMany`] where objects exceed a storage binding.
+    pub fn set_contents(&mut self, list: &DrawList, materials: &Materials) -> Result<(), GpuError> {
+        let objects = ObjectBuffers::upload(&self.gpu, list)?;
+        let common = self.gpu.storage("materials", &materials.common)?;
+        let params: Result<Vec<_>, _> =
+            materials.params.values().map(|bytes| self.gpu.storage("shader materials", bytes)).collect();
+        self.contents = Some(Contents {
+            objects,
+            materials: common,
+            params: params?,
+            shaders: materials.params.keys().copied().collect(),
+            hulls: materials.has_hulls(),
+        });
+        Ok(())
+    }
+
+    /// Draws one still and waits for it. `timed` also measures each pass; `progress` hears of samples that are done.
+    ///
+    /// # Errors
+    /// [`GpuError`] where the picture or the objects do not fit, or the driver fails.
+    pub fn render(
+        &mut self,
+        input: &FrameInput<'_>,
+        timed: bool,
+        progress: &mut dyn FnMut(u32),
+    ) -> Result<(), GpuError> {
+        let gpu = Arc::clone(&self.gpu);
+        check_size(&gpu, input.size)?;
+        let Some(contents) = &self.contents else { return Ok(()) };
+
+        // What this frame needs.
+        let samples = input.samples.clamp(1, MAX_SAMPLES);
+        let direct = samples == 1 && !input.wide;
+        let plan = ShadowPlan::new(
+            input.lighting,
+            input.camera,
+            input.bounds,
+            shadow::map_size(&gpu, input.size[1]),
+        );
+        let shadowed = !plan.views.is_empty();
+        let key = ShadeKey { shaders: contents.shaders.clone(), shadows: shadowed, encode: direct };
+
+        // Pipelines and targets that are not there yet.
+        self.pipelines_built += self.visibility.prepare(&gpu, &contents.objects, contents.hulls)?;
+        if shadowed && contents.hulls {
+            self.pipelines_built += self.visibility.prepare(&gpu, &contents.objects, false)?;
+        }
+        self.pipelines_built += self.shade.prepare(&gpu, &self.visibility, &key)?;
+        if !direct {
+            self.pipelines_built += self.resolve.prepare(&gpu, input.wide)?;
+        }
+        let maps = shadowed
+            .then(|| ShadowMaps::new(&gpu, plan.views[0].light.size_px[0] as u32, plan.views.len() as u32));
+        self.targets.fit(&gpu, input.size, if input.wide { OUTPUT_16 } else { OUTPUT_8 }, !direct);
+
+        // Uniforms and bindings: a view for each sample, then one for each shadow map.
+        let view = View::new(input.camera, input.size);
+        let mut views: Vec<View> = (0..samples).map(|index| view.sample(index, samples)).collect();
+        views.extend(plan.views.iter().map(|shadow| shadow.light));
+        let toward = input.camera.view_from_world.row(2).truncate() * -1.0;
+        let scene = self.visibility.bind(&gpu, &contents.objects, &contents.materials, &views, toward)?;
+        let [ids, depth, output] = self.targets.views()?;
+        let light = self.targets.light_view();
+        let shadow_uniform = plan.uniform();
+        let inputs = ShadeInputs {
+            lights: &Lights::new(input.lighting, &plan.layers),
+            output: &Output { background: input.background },
+            visibility: &ids,
+            shadows: maps.as_ref().map(|maps| (maps, &shadow_uniform)),
+            materials: &contents.params,
+        };
+        let Some(shade_group) = self.shade.bind(&gpu, &key, &inputs) else { return Ok(()) };
+        let mut timer = if timed { PassTimer::new(&gpu) } else { None };
+
+        // The frame, in submissions of a few samples each, so that progress can be told.
+        let mut encoder = frame_encoder(&gpu);
+        for (layer, index) in (0..plan.views.len()).zip(samples as usize..) {
+            let Some(maps) = &maps else { break };
+            let (map_ids, map_depth) = maps.layer(layer as u32);
+            let pass = VisibilityPass { name: "shadow", view: index, hulls: false, ids: &map_ids, depth: &map_depth };
+            self.visibility.draw(&mut encoder, &scene, &contents.objects, &pass, true, &mut timer);
+        }
+        let target = light.as_ref().unwrap_or(&output);
+        for index in 0..samples as usize {
+            let pass =
+                VisibilityPass { name: "visibility", view: index, hulls: contents.hulls, ids: &ids, depth: &depth };
+            self.visibility.draw(&mut encoder, &scene, &contents.objects, &pass, false, &mut timer);
+            self.shade.draw(&mut encoder, &key, &scene, index, &shade_group, target, &mut timer);
+            if (index + 1) % SAMPLES_PER_SUBMISSION == 0 && index + 1 < samples as usize {
+                gpu.queue.submit([std::mem::replace(&mut encoder, frame_encoder(&gpu)).finish()]);
+                gpu.wait()?;
+                progress(index as u32 + 1);
+            }
+        }
+        if let Some(light) = &light {
+            self.resolve.draw(&gpu, &mut encoder, input.wide, inputs.output, light, &output, &mut timer);
+        }
+        if let Some(timer) = &timer {
+            timer.resolve(&mut encoder);
+        }
+        gpu.queue.submit([encoder.finish()]);
+        gpu.wait()?;
+        self.last_times = match &timer {
+            Some(timer) => timer.read(&gpu)?,
+            None => Vec::new(),
+        };
+        self.targets.note_shadow_bytes(maps.as_ref().map_or(0, |maps| {
+            let extent = maps.ids.size();
+            u64::from(extent.width) * u64::from(extent.height) * u64::from(extent.depth_or_array_layers) * 8
+        }));
+        Ok(())
+    }
+
+    /// The last still: straight-alpha sRGB, rows from the top, 4 channels of 8 bits, or of 16 bits in native order.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] where it cannot be read back.
+    pub fn read(&self, wide: bool) -> Result<Vec<u8>, GpuError> {
+        read_texture(&self.gpu, self.targets.output()?, if wide { 8 } else { 4 })
+    }
+
+    /// The AOVs of the same view, one sample at each pixel's centre.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn render_aovs(&mut self, input: &FrameInput<'_>) -> Result<Aovs, GpuError> {
+        // 16 bits keep the linear light of the single sample.
+        let single = FrameInput { samples: 1, wide: true, ..input.clone() };
+        self.render(&single, false, &mut |_| ())?;
+        let gpu = Arc::clone(&self.gpu);
+        let Some(contents) = &self.contents else {
+            return Ok(Aovs { geometry: Vec::new(), ids: Vec::new(), color: Vec::new() });
+        };
+        let view = View::new(input.camera, input.size);
+        let toward = input.camera.view_from_world.row(2).truncate() * -1.0;
+        let scene = self.visibility.bind(&gpu, &contents.objects, &contents.materials, &[view], toward)?;
+        let [ids, _, _] = self.targets.views()?;
+        let geometry = gpu.target("geometry", input.size, 1, aov::GEOMETRY_FORMAT);
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("aov") });
+        let target = geometry.create_view(&Default::default());
+        self.aov.draw(&gpu, &mut encoder, &self.visibility, &scene, 0, &ids, &target)?;
+        gpu.queue.submit([encoder.finish()]);
+        gpu.wait()?;
+        let floats = |bytes: Vec<u8>| bytes.chunks_exact(4).map(bytemuck::pod_read_unaligned).collect::<Vec<f32>>();
+        let light = self.targets.light()?;
+        let color = if light.format() == wgpu::TextureFormat::Rgba16Float {
+            let halves = read_texture(&gpu, light, 8)?;
+            halves.chunks_exact(2).map(|h| half::f16::from_le_bytes([h[0], h[1]]).to_f32()).collect()
+        } else {
+            floats(read_texture(&gpu, light, 16)?)
+        };
+        Ok(Aovs {
+            geometry: floats(read_texture(&gpu, &geometry, 16)?),
+            ids: read_texture(&gpu, self.targets.ids()?, 4)?
+                .chunks_exact(4)
+                .map(bytemuck::pod_read_unaligned)
+                .collect(),
+            color,
+        })
+    }
+
+    /// Milliseconds of each pass of the last timed frame; empty where the adapter has no timestamps.
+    pub fn pass_times(&self) -> &PassTimes {
+        &self.last_times
+    }
+
+    /// How many pipelines were built so far.
+    pub fn pipelines_built(&self) -> u32 {
+        self.pipelines_built
+    }
+
+    /// Spheres and cylinders that are drawn.
+    pub fn object_counts(&self) -> [u32; 2] {
+        self.contents.as_ref().map_or([0, 0], |c| [c.objects.num_atoms, c.objects.num_connectors])
+    }
+
+    /// Bytes of each target of the last frame.
+    pub fn target_bytes(&self) -> TargetBytes {
+        self.targets.bytes()
+    }
+}
+
+fn frame_encoder(gpu: &Gpu) -> wgpu::CommandEncoder {
+    gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") })
+}
+
+fn check_size(gpu: &Gpu, size: [u32; 2]) -> Result<(), GpuError> {
+    let limit = gpu.device.limits().max_texture_dimension_2d;
+    if size[0] == 0 || size[1] == 0 || size[0] > limit || size[1] > limit {
+        return Err(GpuError::TooLarge { width: size[0], height: size[1], limit });
+    }
+    Ok(())
+}
+
+/// Every struct that Rust and WGSL both declare, for the layout test.
+pub fn gpu_structs() -> Vec<StructInfo> {
+    let mut all = vec![
+        View::info(),
+        objects::Atom::info(),
+        objects::Connector::info(),
+        Material::info(),
+        Light::info(),
+        Lights::info(),
+        Output::info(),
+        ShadowView::info(),
+        Shadows::info(),
+    ];
+    for shader in SHADERS {
+        all.push(shader.material_info());
+        all.extend(shader.resource_infos());
+    }
+    all
+}

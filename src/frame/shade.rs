@@ -1,0 +1,283 @@
+//! The shading pass: each pixel once, from the id that it sees, with only the shaders that the style uses.
+
+use std::collections::BTreeMap;
+
+use super::lights::Lights;
+use super::shadow::{ShadowMaps, Shadows};
+use super::visibility::{SceneBindings, Visibility};
+use crate::gpu::{Gpu, GpuError, Module, PassTimer};
+use crate::gpu_struct;
+use crate::shading::{self, ObjectShader, SHADERS, UploadedResource};
+use crate::wgsl;
+
+gpu_struct! {
+    "objects/shade.wgsl",
+    /// See `shaders/objects/shade.wgsl`.
+    pub struct Output {
+        /// Premultiplied linear background; alpha 0 for a transparent picture.
+        pub background: [f32; 4],
+    }
+}
+
+/// What a shading pipeline is built for; equal needs share one pipeline.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ShadeKey {
+    /// Places in the registry of the shaders that the style uses, ascending.
+    pub shaders: Vec<usize>,
+    /// Whether a light casts shadows.
+    pub shadows: bool,
+    /// Straight to 8-bit picture values, instead of adding up linear light.
+    pub encode: bool,
+}
+
+/// First binding of the shaders' own bindings in group 1.
+const FIRST_SHADER_BINDING: u32 = 6;
+
+struct ShadePipeline {
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::RenderPipeline,
+}
+
+/// What the shading pass reads beside the scene.
+pub struct ShadeInputs<'a> {
+    /// The lights.
+    pub lights: &'a Lights,
+    /// The background.
+    pub output: &'a Output,
+    /// Ids of the visibility pass.
+    pub visibility: &'a wgpu::TextureView,
+    /// Shadow maps and their views, where lights cast shadows.
+    pub shadows: Option<(&'a ShadowMaps, &'a Shadows)>,
+    /// Material bytes of each shader of the key, in its order.
+    pub materials: &'a [wgpu::Buffer],
+}
+
+/// Pipelines of the shading pass, by need, and the resources of its shaders.
+#[derive(Default)]
+pub struct Shade {
+    pipelines: BTreeMap<ShadeKey, ShadePipeline>,
+    resources: BTreeMap<usize, Vec<UploadedResource>>,
+}
+
+impl Shade {
+    /// Builds the pipeline of a key, unless it is there. Returns how many were built.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] where a shader does not compile.
+    pub fn prepare(&mut self, gpu: &Gpu, visibility: &Visibility, key: &ShadeKey) -> Result<u32, GpuError> {
+        for &shader in &key.shaders {
+            if !self.resources.contains_key(&shader) {
+                let uploaded: Result<Vec<_>, _> =
+                    SHADERS[shader].resources().iter().map(|resource| shading::upload(gpu, resource)).collect();
+                self.resources.insert(shader, uploaded?);
+            }
+        }
+        if self.pipelines.contains_key(key) {
+            return Ok(0);
+        }
+        let module = shade_module(key).compile(gpu, "shade")?;
+        let layout = self.layout(gpu, key);
+        let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("shade"),
+            bind_group_layouts: &[Some(&visibility.layout), Some(&layout)],
+            immediate_size: 0,
+        });
+        let target = if key.encode {
+            super::OUTPUT_8.into()
+        } else {
+            let add = wgpu::BlendComponent {
+                src_factor: wgpu::BlendFactor::One,
+                dst_factor: wgpu::BlendFactor::One,
+                operation: wgpu::BlendOperation::Add,
+            };
+            wgpu::ColorTargetState {
+                format: super::light_format(gpu),
+                blend: Some(wgpu::BlendState { color: add, alpha: add }),
+                write_mask: wgpu::ColorWrites::ALL,
+            }
+        };
+        let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("shade"),
+            layout: Some(&pipeline_layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("shade_vertex"),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: Default::default(),
+            depth_stencil: None,
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("shade_fragment"),
+                compilation_options: Default::default(),
+                targets: &[Some(target)],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        self.pipelines.insert(key.clone(), ShadePipeline { layout, pipeline });
+        Ok(1)
+    }
+
+    fn layout(&self, gpu: &Gpu, key: &ShadeKey) -> wgpu::BindGroupLayout {
+        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty,
+            count: None,
+        };
+        let uniform = wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        };
+        let storage = wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Storage { read_only: true },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        };
+        let texture = |sample_type, view_dimension| wgpu::BindingType::Texture {
+            sample_type,
+            view_dimension,
+            multisampled: false,
+        };
+        use wgpu::TextureViewDimension::{D2, D2Array};
+        let mut entries =
+            vec![entry(0, uniform), entry(1, uniform), entry(2, texture(wgpu::TextureSampleType::Uint, D2))];
+        if key.shadows {
+            entries.push(entry(3, uniform));
+            entries.push(entry(4, texture(wgpu::TextureSampleType::Uint, D2Array)));
+            entries.push(entry(5, texture(wgpu::TextureSampleType::Depth, D2Array)));
+        }
+        let mut binding = FIRST_SHADER_BINDING;
+        for shader in &key.shaders {
+            entries.push(entry(binding, storage));
+            binding += 1;
+            for resource in self.resources.get(shader).into_iter().flatten() {
+                let ty = match resource {
+                    UploadedResource::Uniform(_) => uniform,
+                    UploadedResource::Texture(_) => texture(wgpu::TextureSampleType::Float { filterable: false }, D2),
+                };
+                entries.push(entry(binding, ty));
+                binding += 1;
+            }
+        }
+        gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("shade"), entries: &entries })
+    }
+
+    /// Binds the inputs of one frame.
+    pub fn bind(&self, gpu: &Gpu, key: &ShadeKey, inputs: &ShadeInputs<'_>) -> Option<wgpu::BindGroup> {
+        let pipeline = self.pipelines.get(key)?;
+        let lights = gpu.uniform("lights", inputs.lights);
+        let output = gpu.uniform("output", inputs.output);
+        let shadows = inputs.shadows.map(|(maps, uniform)| (maps.all(), gpu.uniform("shadows", uniform)));
+        let mut entries = vec![
+            wgpu::BindGroupEntry { binding: 0, resource: lights.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 1, resource: output.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(inputs.visibility) },
+        ];
+        if let Some(((ids, depth), uniform)) = &shadows {
+            entries.push(wgpu::BindGroupEntry { binding: 3, resource: uniform.as_entire_binding() });
+            entries.push(wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::TextureView(ids) });
+            entries.push(wgpu::BindGroupEntry { binding: 5, resource: wgpu::BindingResource::TextureView(depth) });
+        }
+        let mut binding = FIRST_SHADER_BINDING;
+        for (shader, materials) in key.shaders.iter().zip(inputs.materials) {
+            entries.push(wgpu::BindGroupEntry { binding, resource: materials.as_entire_binding() });
+            binding += 1;
+            for resource in self.resources.get(shader).into_iter().flatten() {
+                let resource = match resource {
+                    UploadedResource::Uniform(buffer) => buffer.as_entire_binding(),
+                    UploadedResource::Texture(view) => wgpu::BindingResource::TextureView(view),
+                };
+                entries.push(wgpu::BindGroupEntry { binding, resource });
+                binding += 1;
+            }
+        }
+        Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("shade"),
+            layout: &pipeline.layout,
+            entries: &entries,
+        }))
+    }
+
+    /// Shades all pixels of view `view_index`; the first one clears the target.
+    #[allow(clippy::too_many_arguments)]
+    pub fn draw(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        key: &ShadeKey,
+        scene: &SceneBindings,
+        view_index: usize,
+        inputs: &wgpu::BindGroup,
+        target: &wgpu::TextureView,
+        timer: &mut Option<PassTimer>,
+    ) {
+        let Some(pipeline) = self.pipelines.get(key) else { return };
+        let load = if view_index == 0 { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) } else { wgpu::LoadOp::Load };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("shade"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: target,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+            })],
+            depth_stencil_attachment: None,
+            timestamp_writes: timer.as_mut().and_then(|timer| timer.pass("shade")),
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        pass.set_pipeline(&pipeline.pipeline);
+        pass.set_bind_group(0, &scene.group, &[SceneBindings::offset(view_index)]);
+        pass.set_bind_group(1, inputs, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+/// The WGSL of the shading pass for a key.
+pub fn shade_module(key: &ShadeKey) -> Module {
+    let mut module = Module::new(&[
+        wgsl!("lib/view.wgsl"),
+        wgsl!("lib/objects.wgsl"),
+        wgsl!("lib/intersect.wgsl"),
+        wgsl!("lib/surface.wgsl"),
+        wgsl!("lib/lights.wgsl"),
+        if key.shadows { wgsl!("lib/shadow.wgsl") } else { wgsl!("lib/shadow_none.wgsl") },
+        wgsl!("lib/encode.wgsl"),
+    ]);
+    let mut bindings = format!("const ENCODE: bool = {};\n", key.encode);
+    if key.shadows {
+        bindings.push_str(
+            "@group(1) @binding(3) var<uniform> shadows: Shadows;\n\
+             @group(1) @binding(4) var shadow_ids: texture_2d_array<u32>;\n\
+             @group(1) @binding(5) var shadow_depth: texture_depth_2d_array;\n",
+        );
+    }
+    let mut binding = FIRST_SHADER_BINDING;
+    let mut cases = String::new();
+    for &index in &key.shaders {
+        let shader: &dyn ObjectShader = SHADERS[index];
+        for file in shader.wgsl() {
+            module.add(*file);
+        }
+        let declarations = std::iter::once(shading::material_declaration(shader))
+            .chain(shader.resources().iter().map(|resource| resource.declaration.to_owned()));
+        for declaration in declarations {
+            bindings.push_str(&format!("@group(1) @binding({binding}) {declaration}\n"));
+            binding += 1;
+        }
+        let name = shader.name();
+        cases.push_str(&format!(
+            "        case {index}u: {{ return {name}_shade(s, {name}_materials[material.index]); }}\n"
+        ));
+    }
+    bindings.push_str(&format!(
+        "fn shade_object(s: Surface, material: Material) -> vec3<f32> {{\n    switch material.shader {{\n{cases}        default: {{ return s.base_color; }}\n    }}\n}}\n"
+    ));
+    module.add_generated("shade bindings", bindings);
+    module.add(wgsl!("objects/shade.wgsl"));
+    module
+}

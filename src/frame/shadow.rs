@@ -1,0 +1,164 @@
+//! Shadow maps: what each light that casts shadows sees of the scene, once per still.
+
+use glam::{Mat4, Vec2, Vec3};
+
+use super::view::View;
+use super::visibility::{DEPTH_FORMAT, ID_FORMAT};
+use crate::gpu::Gpu;
+use crate::gpu_struct;
+use crate::scene::{Camera, LightPlace, Lighting, Sphere};
+
+/// Lights that cast shadows in one frame.
+pub const MAX_SHADOWS: usize = 4;
+
+gpu_struct! {
+    "lib/shadow.wgsl",
+    /// See `shaders/lib/shadow.wgsl`.
+    pub struct ShadowView {
+        /// The light's view of the scene.
+        pub light: View,
+        /// From the camera's to the light's view space.
+        pub light_from_view: [[f32; 4]; 4],
+    }
+}
+
+gpu_struct! {
+    "lib/shadow.wgsl",
+    /// See `shaders/lib/shadow.wgsl`.
+    pub struct Shadows {
+        /// One for each layer of the maps.
+        pub views: [ShadowView; MAX_SHADOWS],
+    }
+}
+
+/// The lights' views of a frame, before any map is drawn.
+#[derive(Debug, Clone, Default)]
+pub struct ShadowPlan {
+    /// The lights' views, by layer.
+    pub views: Vec<ShadowView>,
+    /// The layer of each light of the style.
+    pub layers: Vec<Option<u32>>,
+}
+
+impl ShadowPlan {
+    /// Views that fit the scene, for the lights that cast shadows. A point light within the scene's bounding sphere
+    /// casts none: one map cannot hold what lies on all its sides.
+    pub fn new(lighting: &Lighting, camera: &Camera, bounds: Sphere, map_size: u32) -> ShadowPlan {
+        let view_from_world = camera.view_from_world;
+        let center_view = view_from_world.transform_point3(bounds.center);
+        let mut plan = ShadowPlan::default();
+        for light in &lighting.lights {
+            let light_camera = match (light.shadow, light.place) {
+                (None, _) => None,
+                (Some(_), LightPlace::Directional(toward)) => Some(directional(toward, center_view, bounds.radius)),
+                (Some(_), LightPlace::Point { position_view, .. }) => point(position_view, center_view, bounds.radius),
+            };
+            let layer = light_camera.filter(|_| plan.views.len() < MAX_SHADOWS).map(|light_camera| {
+                let light_from_view = light_camera.view_from_world;
+                let in_world = Camera { view_from_world: light_from_view * view_from_world, ..light_camera };
+                plan.views.push(ShadowView {
+                    light: View::new(&in_world, [map_size; 2]),
+                    light_from_view: light_from_view.to_cols_array_2d(),
+                });
+                plan.views.len() as u32 - 1
+            });
+            plan.layers.push(layer);
+        }
+        plan
+    }
+
+    /// The uniform.
+    pub fn uniform(&self) -> Shadows {
+        let mut shadows: Shadows = bytemuck::Zeroable::zeroed();
+        for (slot, view) in shadows.views.iter_mut().zip(&self.views) {
+            *slot = *view;
+        }
+        shadows
+    }
+}
+
+/// Half a percent beyond the sphere, so that nothing of it touches the border of the map.
+const MARGIN: f32 = 1.005;
+
+fn looking(from: Vec3, toward: Vec3) -> Mat4 {
+    let up = if toward.y.abs() > 0.9 { Vec3::X } else { Vec3::Y };
+    glam::camera::rh::view::look_to_mat4(from, toward, up)
+}
+
+/// The parallel view along a directional light, in the camera's view space.
+fn directional(toward_light: Vec3, center: Vec3, radius: f32) -> Camera {
+    let reach = radius * MARGIN;
+    Camera {
+        view_from_world: looking(center + toward_light * (2.0 * reach), -toward_light),
+        half_extent: Vec2::splat(reach),
+        orthographic: true,
+        near: reach,
+        far: 3.0 * reach,
+    }
+}
+
+/// The view from a point light onto the sphere, in the camera's view space; none from within it.
+fn point(position: Vec3, center: Vec3, radius: f32) -> Option<Camera> {
+    let reach = radius * MARGIN;
+    let distance = position.distance(center);
+    if distance <= reach * 1.01 {
+        return None;
+    }
+    let sine = reach / distance;
+    Some(Camera {
+        view_from_world: looking(position, (center - position) / distance),
+        half_extent: Vec2::splat(sine / (1.0 - sine * sine).sqrt()),
+        orthographic: false,
+        near: (distance - reach).max(1e-3 * distance),
+        far: distance + reach,
+    })
+}
+
+/// Texels along a side of the map: about one and a half for each pixel that the picture spends on the scene, since the
+/// exact test of the hard edge needs only ids, and the soft filter is wider than a texel.
+pub fn map_size(gpu: &Gpu, picture_height_px: u32) -> u32 {
+    let wanted = (picture_height_px + picture_height_px / 2).next_multiple_of(64);
+    wanted.clamp(256, 4096).min(gpu.device.limits().max_texture_dimension_2d)
+}
+
+/// The maps: ids and depths, one layer for each light.
+pub struct ShadowMaps {
+    /// Ids of what each light sees first.
+    pub ids: wgpu::Texture,
+    /// Their depths.
+    pub depth: wgpu::Texture,
+}
+
+impl ShadowMaps {
+    /// Allocates `layers` maps.
+    pub fn new(gpu: &Gpu, size: u32, layers: u32) -> ShadowMaps {
+        ShadowMaps {
+            ids: gpu.target("shadow ids", [size; 2], layers, ID_FORMAT),
+            depth: gpu.target("shadow depth", [size; 2], layers, DEPTH_FORMAT),
+        }
+    }
+
+    /// One layer to draw to: ids and depth.
+    pub fn layer(&self, index: u32) -> (wgpu::TextureView, wgpu::TextureView) {
+        let one = |texture: &wgpu::Texture| {
+            texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2),
+                base_array_layer: index,
+                array_layer_count: Some(1),
+                ..Default::default()
+            })
+        };
+        (one(&self.ids), one(&self.depth))
+    }
+
+    /// All layers to read from: ids and depth.
+    pub fn all(&self) -> (wgpu::TextureView, wgpu::TextureView) {
+        let all = |texture: &wgpu::Texture| {
+            texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2Array),
+                ..Default::default()
+            })
+        };
+        (all(&self.ids), all(&self.depth))
+    }
+}

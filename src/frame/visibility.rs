@@ -1,0 +1,262 @@
+//! The visibility pass: which object each pixel sees, by exact ray casts in tight quads.
+//!
+//! Writes an id (32 bits) and a depth (32-bit float) and nothing else; shading comes once per pixel, later. The same
+//! pass draws what a light sees, into shadow maps.
+
+use std::collections::BTreeMap;
+
+use super::objects::ObjectBuffers;
+use super::view::View;
+use crate::gpu::{Gpu, GpuError, Module, PassTimer};
+use crate::wgsl;
+
+/// Ids: kind in the upper 3 bits, index below.
+pub const ID_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+/// Reversed depth, 1 nearest.
+pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// Bytes between two views in the view buffer: WebGPU's alignment of dynamic offsets.
+const VIEW_STRIDE: u64 = 256;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    Atom,
+    Connector,
+}
+
+/// Pipelines and bindings of the visibility pass. Builds only what is drawn.
+pub struct Visibility {
+    /// Group 0 of every pass that reads the scene: view, objects, materials, orders.
+    pub layout: wgpu::BindGroupLayout,
+    pipelines: BTreeMap<(Kind, bool), wgpu::RenderPipeline>,
+}
+
+/// One use of the pass.
+pub struct VisibilityPass<'a> {
+    /// Its name in timings.
+    pub name: &'static str,
+    /// Which of the bound views sees.
+    pub view: usize,
+    /// Whether outlines by enlarged back faces are drawn.
+    pub hulls: bool,
+    /// Where ids go.
+    pub ids: &'a wgpu::TextureView,
+    /// Where depths go.
+    pub depth: &'a wgpu::TextureView,
+}
+
+/// Group 0 with its buffers.
+pub struct SceneBindings {
+    /// To bind at group 0 with a [`SceneBindings::offset`].
+    pub group: wgpu::BindGroup,
+}
+
+impl SceneBindings {
+    /// Dynamic offset of view `index`.
+    pub fn offset(index: usize) -> u32 {
+        index as u32 * VIEW_STRIDE as u32
+    }
+}
+
+impl Visibility {
+    /// The bind group layout; pipelines come when they are drawn with.
+    pub fn new(gpu: &Gpu) -> Visibility {
+        let storage = |binding, visibility| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Storage { read_only: true },
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        };
+        let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("scene"),
+            entries: &[
+                wgpu::BindGroupLayoutEntry {
+                    binding: 0,
+                    visibility: both,
+                    ty: wgpu::BindingType::Buffer {
+                        ty: wgpu::BufferBindingType::Uniform,
+                        has_dynamic_offset: true,
+                        min_binding_size: None,
+                    },
+                    count: None,
+                },
+                storage(1, both),
+                storage(2, both),
+                storage(3, both),
+                storage(4, wgpu::ShaderStages::VERTEX),
+                storage(5, wgpu::ShaderStages::VERTEX),
+            ],
+        });
+        Visibility { layout, pipelines: BTreeMap::new() }
+    }
+
+    /// Binds objects, materials and views for one frame. `toward` is the view's direction in world space.
+    ///
+    /// # Errors
+    /// [`GpuError::TooMany`] where the orders exceed a binding.
+    pub fn bind(
+        &self,
+        gpu: &Gpu,
+        objects: &ObjectBuffers,
+        materials: &wgpu::Buffer,
+        views: &[View],
+        toward: glam::Vec3,
+    ) -> Result<SceneBindings, GpuError> {
+        let mut bytes = vec![0u8; views.len() * VIEW_STRIDE as usize];
+        for (slot, view) in bytes.chunks_exact_mut(VIEW_STRIDE as usize).zip(views) {
+            slot[..size_of::<View>()].copy_from_slice(bytemuck::bytes_of(view));
+        }
+        let view_buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("views"),
+            size: bytes.len() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        gpu.queue.write_buffer(&view_buffer, 0, &bytes);
+        let (atom_order, connector_order) = objects.orders(toward);
+        let atom_order = gpu.storage("atom order", &atom_order)?;
+        let connector_order = gpu.storage("connector order", &connector_order)?;
+        fn whole(binding: u32, buffer: &wgpu::Buffer) -> wgpu::BindGroupEntry<'_> {
+            wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }
+        }
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("scene"),
+            layout: &self.layout,
+            entries: &[
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                        buffer: &view_buffer,
+                        offset: 0,
+                        size: std::num::NonZeroU64::new(size_of::<View>() as u64),
+                    }),
+                },
+                whole(1, &objects.atoms),
+                whole(2, &objects.connectors),
+                whole(3, materials),
+                whole(4, &atom_order),
+                whole(5, &connector_order),
+            ],
+        });
+        Ok(SceneBindings { group })
+    }
+
+    /// Builds the pipelines that `objects` need, with hull outlines or without.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] where a shader does not compile.
+    pub fn prepare(&mut self, gpu: &Gpu, objects: &ObjectBuffers, hulls: bool) -> Result<u32, GpuError> {
+        let mut built = 0;
+        for (kind, count) in [(Kind::Atom, objects.num_atoms), (Kind::Connector, objects.num_connectors)] {
+            if count > 0 && !self.pipelines.contains_key(&(kind, hulls)) {
+                let pipeline = self.build(gpu, kind, hulls)?;
+                self.pipelines.insert((kind, hulls), pipeline);
+                built += 1;
+            }
+        }
+        Ok(built)
+    }
+
+    fn build(&self, gpu: &Gpu, kind: Kind, hulls: bool) -> Result<wgpu::RenderPipeline, GpuError> {
+        let module = visibility_module(kind == Kind::Atom, hulls).compile(gpu, "visibility")?;
+        let (vertex, fragment) = match kind {
+            Kind::Atom => ("atom_vertex", "atom_fragment"),
+            Kind::Connector => ("connector_vertex", "connector_fragment"),
+        };
+        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("visibility"),
+            bind_group_layouts: &[Some(&self.layout)],
+            immediate_size: 0,
+        });
+        Ok(gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("visibility"),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some(vertex),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState {
+                topology: wgpu::PrimitiveTopology::TriangleStrip,
+                ..Default::default()
+            },
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH_FORMAT,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(wgpu::CompareFunction::Greater),
+                stencil: Default::default(),
+                bias: Default::default(),
+            }),
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(fragment),
+                compilation_options: Default::default(),
+                targets: &[Some(ID_FORMAT.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        }))
+    }
+
+    /// Draws all objects, as the pass's view of the bindings sees them.
+    pub fn draw(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        bindings: &SceneBindings,
+        objects: &ObjectBuffers,
+        to: &VisibilityPass<'_>,
+        keep_depth: bool,
+        timer: &mut Option<PassTimer>,
+    ) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some(to.name),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: to.ids,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: to.depth,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0.0),
+                    store: if keep_depth { wgpu::StoreOp::Store } else { wgpu::StoreOp::Discard },
+                }),
+                stencil_ops: None,
+            }),
+            timestamp_writes: timer.as_mut().and_then(|timer| timer.pass(to.name)),
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        pass.set_bind_group(0, &bindings.group, &[SceneBindings::offset(to.view)]);
+        for (kind, count) in [(Kind::Atom, objects.num_atoms), (Kind::Connector, objects.num_connectors)] {
+            if count > 0
+                && let Some(pipeline) = self.pipelines.get(&(kind, to.hulls))
+            {
+                pass.set_pipeline(pipeline);
+                pass.draw(0..4, 0..count);
+            }
+        }
+    }
+}
+
+/// The WGSL of the atoms' or connectors' visibility.
+pub fn visibility_module(atoms: bool, hulls: bool) -> Module {
+    let mut module = Module::new(&[
+        wgsl!("lib/view.wgsl"),
+        wgsl!("lib/objects.wgsl"),
+        wgsl!("lib/intersect.wgsl"),
+        wgsl!("lib/hull.wgsl"),
+        wgsl!("lib/billboard.wgsl"),
+    ]);
+    module.add_generated("visibility options", format!("const HULL: bool = {hulls};"));
+    module.add(if atoms { wgsl!("objects/atom.wgsl") } else { wgsl!("objects/connector.wgsl") });
+    module
+}

@@ -1,0 +1,15 @@
+//! The graphics device: opening it, shader text, uniform layouts, targets, read-back and timing.
+//!
+//! Depends on nothing of ours. Everything is headless: no surface, no window.
+
+mod device;
+pub mod layout;
+mod readback;
+mod timing;
+mod wgsl;
+
+pub use device::{Gpu, GpuError};
+pub use layout::{Field, GpuStruct, StructInfo};
+pub use readback::read_texture;
+pub use timing::{PassTimer, PassTimes};
+pub use wgsl::{Module, Wgsl};

@@ -1,0 +1,40 @@
+//! Copying a texture back to the CPU.
+
+use super::{Gpu, GpuError};
+
+/// Reads a two-dimensional texture: tightly packed rows from the top, `bytes_per_pixel` each pixel.
+///
+/// # Errors
+/// [`GpuError::Driver`] when the device cannot map the copy.
+pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture, bytes_per_pixel: u32) -> Result<Vec<u8>, GpuError> {
+    let size = texture.size();
+    let row = size.width * bytes_per_pixel;
+    let padded_row = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("readback"),
+        size: u64::from(padded_row) * u64::from(size.height),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("readback") });
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded_row), rows_per_image: None },
+        },
+        wgpu::Extent3d { depth_or_array_layers: 1, ..size },
+    );
+    gpu.queue.submit([encoder.finish()]);
+    buffer.map_async(wgpu::MapMode::Read, .., |_| {});
+    gpu.wait()?;
+    let mapped = buffer.get_mapped_range(..).map_err(|error| GpuError::Driver(error.to_string()))?;
+    if row == padded_row {
+        return Ok(mapped.to_vec());
+    }
+    let mut pixels = Vec::with_capacity(row as usize * size.height as usize);
+    for line in mapped.chunks_exact(padded_row as usize) {
+        pixels.extend_from_slice(&line[..row as usize]);
+    }
+    Ok(pixels)
+}

@@ -1,0 +1,114 @@
+//! Shader text: files embedded in the program, joined into modules that remember which line came from where.
+
+use super::{Gpu, GpuError};
+
+/// One WGSL file below `shaders/`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Wgsl {
+    /// Path below `shaders/`.
+    pub path: &'static str,
+    /// Its text.
+    pub text: &'static str,
+}
+
+/// Embeds a file of `shaders/`: `wgsl!("lib/view.wgsl")`.
+#[macro_export]
+macro_rules! wgsl {
+    ($path:literal) => {
+        $crate::gpu::Wgsl { path: $path, text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $path)) }
+    };
+}
+
+/// A shader module in the making: files and generated lines in order, each file once.
+#[derive(Debug, Clone, Default)]
+pub struct Module {
+    parts: Vec<(&'static str, String)>,
+}
+
+impl Module {
+    /// A module of these files.
+    pub fn new(files: &[Wgsl]) -> Module {
+        let mut module = Module::default();
+        for file in files {
+            module.add(*file);
+        }
+        module
+    }
+
+    /// Adds a file unless it is there already.
+    pub fn add(&mut self, file: Wgsl) {
+        if !self.parts.iter().any(|(path, _)| *path == file.path) {
+            self.parts.push((file.path, file.text.to_owned()));
+        }
+    }
+
+    /// Adds lines that code wrote, shown in messages as `name`.
+    pub fn add_generated(&mut self, name: &'static str, text: String) {
+        self.parts.push((name, text));
+    }
+
+    /// The whole text.
+    pub fn text(&self) -> String {
+        let mut all = String::new();
+        for (_, text) in &self.parts {
+            all.push_str(text);
+            all.push('\n');
+        }
+        all
+    }
+
+    /// File and line of a line (from 1) of [`Module::text`].
+    pub fn place(&self, line: usize) -> (&'static str, usize) {
+        let mut left = line;
+        for (path, text) in &self.parts {
+            let lines = text.matches('\n').count() + 1;
+            if left <= lines {
+                return (path, left);
+            }
+            left -= lines;
+        }
+        ("end of module", left)
+    }
+
+    /// Compiles the module.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] with file and line of the first mistake.
+    pub fn compile(&self, gpu: &Gpu, label: &'static str) -> Result<wgpu::ShaderModule, GpuError> {
+        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(label),
+            source: wgpu::ShaderSource::Wgsl(self.text().into()),
+        });
+        let error = pollster::block_on(scope.pop());
+        if let Some(error) = error {
+            let message = pollster::block_on(module.get_compilation_info())
+                .messages
+                .first()
+                .and_then(|message| {
+                    let at = message.location.as_ref()?;
+                    let (file, line) = self.place(at.line_number as usize);
+                    Some(format!("shaders/{file}:{line}:{}: {}", at.line_position, message.message))
+                })
+                .unwrap_or_else(|| error.to_string());
+            return Err(GpuError::Driver(message));
+        }
+        Ok(module)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_traced_back_to_their_file() {
+        let mut module = Module::default();
+        module.add(Wgsl { path: "a.wgsl", text: "one\ntwo\n" });
+        module.add(Wgsl { path: "b.wgsl", text: "three\n" });
+        module.add(Wgsl { path: "a.wgsl", text: "one\ntwo\n" });
+        let line = module.text().lines().position(|line| line == "three").map(|index| index + 1);
+        assert_eq!(line.map(|line| module.place(line)), Some(("b.wgsl", 1)));
+        assert_eq!(module.place(2), ("a.wgsl", 2));
+    }
+}

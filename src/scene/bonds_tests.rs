@@ -1,0 +1,1 @@
+//! Tests of the bond rules, on small arrangements of atoms.

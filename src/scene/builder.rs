@@ -1,0 +1,294 @@
+//! Collects atoms as importers read them and makes a [`Molecule`] of them.
+//!
+//! Steps of [`MoleculeBuilder::finish`]: drop the less occupied alternate locations, recentre, bond, bound.
+
+use super::altloc;
+use super::bonds::{self, FileBond};
+use super::element::Element;
+use super::molecule::{Atom, Molecule, Residue};
+use super::name::Name;
+use super::report::{NoteKind, Report};
+use super::sphere::bounding_sphere;
+use glam::{DVec3, Vec3};
+use std::collections::HashMap;
+
+/// Above this rounding step of f32 positions, in angstrom, the report says so; a tenth of a pixel in any close view.
+const VISIBLE_ROUNDING: f64 = 0.005;
+
+/// An atom as a file gives it.
+#[derive(Debug, Clone, Copy)]
+pub struct NewAtom<'a> {
+    /// Centre in angstrom, as in the file; must be finite and below 1e30.
+    pub position: DVec3,
+    /// Chemical element.
+    pub element: Element,
+    /// The file's name of the atom.
+    pub name: Name,
+    /// Letter of its alternate location, or 0.
+    pub alt_loc: u8,
+    /// Share of molecules in which the atom is here; decides between alternate locations. 1 if unknown.
+    pub occupancy: f32,
+    /// Name of its residue, or empty.
+    pub residue_name: Name,
+    /// Number of its residue, or 0.
+    pub residue_number: i32,
+    /// Insertion code of its residue, or 0.
+    pub insertion_code: u8,
+    /// Whether it is a `HETATM`.
+    pub is_hetero: bool,
+    /// Chain id, or empty; any bytes.
+    pub chain: &'a [u8],
+    /// Model number; must not fall from one atom to the next.
+    pub model: u32,
+}
+
+/// Atoms in the order of the file, with the groups they belong to.
+#[derive(Debug, Default)]
+pub struct MoleculeBuilder {
+    positions: Vec<DVec3>,
+    atoms: Vec<Atom>,
+    occupancies: Vec<f32>,
+    residues: Vec<Residue>,
+    chains: Vec<String>,
+    chain_index: HashMap<Vec<u8>, u32>,
+    last_chain: Option<(Vec<u8>, u32)>,
+    has_alt_locs: bool,
+}
+
+impl MoleculeBuilder {
+    /// Number of atoms so far.
+    pub fn len(&self) -> usize {
+        self.atoms.len()
+    }
+
+    /// Whether there is no atom yet.
+    pub fn is_empty(&self) -> bool {
+        self.atoms.is_empty()
+    }
+
+    /// Adds an atom and returns its index, by which [`FileBond`]s name it.
+    pub fn push(&mut self, atom: &NewAtom<'_>) -> u32 {
+        let residue = Residue {
+            number: atom.residue_number,
+            chain: self.chain(atom.chain),
+            model: atom.model,
+            name: atom.residue_name,
+            insertion_code: atom.insertion_code,
+            is_hetero: atom.is_hetero,
+        };
+        if self
+            .residues
+            .last()
+            .is_none_or(|last| !same_residue(last, &residue))
+        {
+            self.residues.push(residue);
+        }
+        let index = self.atoms.len() as u32;
+        self.has_alt_locs |= atom.alt_loc != 0;
+        self.positions.push(atom.position);
+        self.occupancies.push(atom.occupancy);
+        self.atoms.push(Atom {
+            position: Vec3::ZERO,
+            residue: self.residues.len() as u32 - 1,
+            name: atom.name,
+            element: atom.element,
+            alt_loc: atom.alt_loc,
+        });
+        index
+    }
+
+    /// Makes the molecule, or `None` if there is no atom. `file_bonds` may hold duplicates and any direction.
+    pub fn finish(mut self, file_bonds: &[FileBond], report: &mut Report) -> Option<Molecule> {
+        let new_index = self.drop_alternates(report);
+        let bounds = self
+            .positions
+            .iter()
+            .map(|&p| (p, p))
+            .reduce(|(low, high), (p, _)| (low.min(p), high.max(p)));
+        let (low, high) = bounds?;
+        let origin = (low + high) * 0.5;
+        for (atom, &position) in self.atoms.iter_mut().zip(&self.positions) {
+            atom.position = (position - origin).as_vec3();
+        }
+        let rounding = (high - low).max_element() * f64::from(f32::EPSILON) * 0.25;
+        if rounding > VISIBLE_ROUNDING {
+            report.note(NoteKind::CoarsePositions, None, || {
+                format!("to about {rounding:.2e} angstrom")
+            });
+        }
+        // Give back what growing the lists left over before the bond search takes memory.
+        drop((self.positions, self.occupancies, self.chain_index));
+        self.atoms.shrink_to_fit();
+        self.residues.shrink_to_fit();
+        let kept_bond = |bond: &FileBond| {
+            let map = |index: u32| {
+                new_index.as_ref().map_or(Some(index), |new_index| {
+                    new_index.get(index as usize).copied().flatten()
+                })
+            };
+            Some(FileBond {
+                a: map(bond.a)?,
+                b: map(bond.b)?,
+                order: bond.order,
+            })
+        };
+        let file_bonds: Vec<FileBond> = file_bonds.iter().filter_map(kept_bond).collect();
+        let bonds = bonds::find(&self.atoms, &self.residues, &file_bonds, report);
+        let sphere = bounding_sphere(
+            self.atoms
+                .iter()
+                .map(|atom| (atom.position, atom.element.vdw_radius())),
+        );
+        Some(Molecule {
+            atoms: self.atoms,
+            residues: self.residues,
+            chains: self.chains,
+            bonds,
+            origin,
+            sphere,
+        })
+    }
+
+    /// Drops all but one alternate location and the residues left without atoms; returns where each atom went, if any moved.
+    fn drop_alternates(&mut self, report: &mut Report) -> Option<Vec<Option<u32>>> {
+        if !self.has_alt_locs {
+            return None;
+        }
+        let keep = altloc::choose(&self.atoms, &self.residues, &self.occupancies);
+        let mut new_index = vec![None; self.atoms.len()];
+        let (mut count, mut residues) = (0_usize, Vec::<Residue>::new());
+        for (old, &kept) in keep.iter().enumerate() {
+            if !kept {
+                continue;
+            }
+            let mut atom = self.atoms[old];
+            let residue = self.residues[atom.residue as usize];
+            if residues
+                .last()
+                .is_none_or(|last| !same_residue(last, &residue))
+            {
+                residues.push(residue);
+            }
+            atom.residue = residues.len() as u32 - 1;
+            self.atoms[count] = atom;
+            self.positions[count] = self.positions[old];
+            new_index[old] = Some(count as u32);
+            count += 1;
+        }
+        report.note_many(
+            NoteKind::AlternateLocation,
+            (keep.len() - count) as u32,
+            String::new,
+        );
+        self.atoms.truncate(count);
+        self.positions.truncate(count);
+        self.residues = residues;
+        Some(new_index)
+    }
+
+    /// The index of a chain id, which is new or, nearly always, that of the atom before.
+    fn chain(&mut self, id: &[u8]) -> u32 {
+        if let Some((last, index)) = &self.last_chain
+            && last == id
+        {
+            return *index;
+        }
+        let index = match self.chain_index.get(id) {
+            Some(&index) => index,
+            None => {
+                let index = self.chains.len() as u32;
+                self.chains.push(String::from_utf8_lossy(id).into_owned());
+                self.chain_index.insert(id.to_vec(), index);
+                index
+            }
+        };
+        self.last_chain = Some((id.to_vec(), index));
+        index
+    }
+}
+
+/// Whether two neighbours in the file belong together; a `HETATM` within a residue does not split it.
+fn same_residue(a: &Residue, b: &Residue) -> bool {
+    Residue {
+        is_hetero: b.is_hetero,
+        ..*a
+    } == *b
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// An atom without residue.
+    pub(in crate::scene) fn bare(element: &str, x: f64, y: f64, z: f64) -> NewAtom<'static> {
+        NewAtom {
+            position: DVec3::new(x, y, z),
+            element: Element::from_symbol(element.as_bytes()).unwrap_or_default(),
+            name: Name::new(element.as_bytes()),
+            alt_loc: 0,
+            occupancy: 1.0,
+            residue_name: Name::default(),
+            residue_number: 0,
+            insertion_code: 0,
+            is_hetero: false,
+            chain: b"",
+            model: 1,
+        }
+    }
+
+    /// The molecule of some atoms without bonds of their own.
+    pub(in crate::scene) fn build(atoms: &[NewAtom<'_>]) -> Molecule {
+        let mut builder = MoleculeBuilder::default();
+        atoms.iter().for_each(|atom| {
+            builder.push(atom);
+        });
+        builder
+            .finish(&[], &mut Report::default())
+            .expect("at least one atom")
+    }
+
+    #[test]
+    fn nothing_gives_no_molecule() {
+        assert_eq!(
+            MoleculeBuilder::default().finish(&[], &mut Report::default()),
+            None
+        );
+    }
+
+    #[test]
+    fn far_molecules_keep_their_precision() {
+        let near = build(&[bare("C", 0.0, 0.0, 0.0), bare("C", 1.5, 0.0, 0.001)]);
+        let far = build(&[bare("C", 1e8, 0.0, 0.0), bare("C", 1e8 + 1.5, 0.0, 0.001)]);
+        assert!((far.origin.x - 1e8 - 0.75).abs() < 1e-6);
+        assert_eq!(near.atoms[0].position, far.atoms[0].position);
+        assert_eq!(far.bonds.len(), 1);
+    }
+
+    #[test]
+    fn atoms_miles_apart_are_reported_as_rounded() {
+        let mut builder = MoleculeBuilder::default();
+        builder.push(&bare("C", 0.0, 0.0, 0.0));
+        builder.push(&bare("C", 1e9, 0.0, 0.0));
+        let mut report = Report::default();
+        let molecule = builder.finish(&[], &mut report).expect("two atoms");
+        assert_eq!(report.count(NoteKind::CoarsePositions), 1);
+        assert!(molecule.bounding_sphere().radius >= 5e8);
+    }
+
+    #[test]
+    fn chains_are_listed_once_and_residues_follow_the_file() {
+        let mut atoms = [bare("C", 0.0, 0.0, 0.0); 4];
+        (
+            atoms[0].chain,
+            atoms[1].chain,
+            atoms[2].chain,
+            atoms[3].chain,
+        ) = (b"A", b"B", b"A", b"A");
+        atoms[3].is_hetero = true;
+        let molecule = build(&atoms);
+        assert_eq!(molecule.chains, ["A", "B"]);
+        assert_eq!(molecule.residues.len(), 3);
+        assert_eq!(molecule.chain(&molecule.atoms[2]), "A");
+        assert!(!molecule.residue(&molecule.atoms[3]).is_hetero);
+    }
+}

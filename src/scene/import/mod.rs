@@ -1,0 +1,132 @@
+//! Importers: bytes of a file to a molecule. One file per format.
+
+mod conect;
+mod lines;
+mod models;
+mod number;
+mod pdb;
+mod sniff;
+mod xyz;
+
+pub use models::ModelChoice;
+pub use sniff::{Format, sniff};
+
+use super::Scene;
+use super::error::SceneError;
+use super::molecule::Molecule;
+use super::report::{NoteKind, Report};
+use glam::DVec3;
+use std::path::Path;
+
+/// What to read of a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct LoadOptions {
+    /// Which models or frames.
+    pub model: ModelChoice,
+}
+
+/// What importers share: the file's name for messages, the options, the notes.
+struct Import<'a> {
+    file: &'a str,
+    options: &'a LoadOptions,
+    report: Report,
+}
+
+impl Import<'_> {
+    /// The error of a line that nothing can be made of; `what` says the way out after a semicolon.
+    fn malformed(&self, line: u32, what: String) -> SceneError {
+        SceneError::Malformed {
+            file: self.file.to_string(),
+            line,
+            what,
+        }
+    }
+
+    /// The position of three coordinates; `None`, with a note, if one is no number.
+    ///
+    /// # Errors
+    /// `Malformed` if one is a number that no picture can hold.
+    fn position(&mut self, line: u32, fields: [&[u8]; 3]) -> Result<Option<DVec3>, SceneError> {
+        let mut position = DVec3::ZERO;
+        for (axis, field) in fields.into_iter().enumerate() {
+            let name = ["x", "y", "z"][axis];
+            match number::float(field) {
+                Some(value) if value.is_finite() && value.abs() <= number::ABSURD => {
+                    position[axis] = value
+                }
+                Some(value) if value.is_finite() => {
+                    let what = format!(
+                        "{name} = {} is no position in angstrom; correct it or delete the line",
+                        lines::quote(field)
+                    );
+                    return Err(self.malformed(line, what));
+                }
+                _ => {
+                    self.report.note(NoteKind::BadCoordinate, line, || {
+                        format!("{name} = {}", lines::quote(field))
+                    });
+                    return Ok(None);
+                }
+            }
+        }
+        Ok(Some(position))
+    }
+}
+
+/// Reads a file of any format that is known.
+pub(super) fn read(file: &str, bytes: &[u8], options: &LoadOptions) -> Result<Scene, SceneError> {
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    if text.trim_ascii().is_empty() {
+        return Err(SceneError::Empty {
+            file: file.to_string(),
+        });
+    }
+    let unsupported = |what: String| {
+        Err(SceneError::Unsupported {
+            file: file.to_string(),
+            what,
+        })
+    };
+    let mut import = Import {
+        file,
+        options,
+        report: Report::default(),
+    };
+    let molecule: Molecule = match sniff(file, bytes) {
+        Format::Pdb => pdb::read(&mut import, bytes)?,
+        Format::Xyz => xyz::read(&mut import, bytes)?,
+        Format::Foreign(what) => {
+            return unsupported(format!(
+                "is {what}, not a molecule in PDB or XYZ format; {}",
+                way_out(what)
+            ));
+        }
+        Format::Unknown => {
+            return unsupported("is in no format that is known here; save the molecule as PDB or XYZ, with that extension".to_string());
+        }
+    };
+    let name = Path::new(file)
+        .file_stem()
+        .map(|stem| stem.to_string_lossy().into_owned())
+        .unwrap_or_default();
+    Ok(Scene {
+        molecule,
+        report: import.report,
+        name,
+    })
+}
+
+/// What helps with a file of another format.
+fn way_out(what: &str) -> &'static str {
+    if what.contains("archive") {
+        "unpack it first"
+    } else if what.contains("LFS") {
+        "fetch it with: git lfs pull"
+    } else if what.contains("web page") {
+        "download the file itself rather than the page about it"
+    } else if what.contains("UTF-16") {
+        "save it as UTF-8"
+    } else {
+        "convert it to PDB or XYZ"
+    }
+}

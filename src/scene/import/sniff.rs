@@ -1,0 +1,199 @@
+//! Finds out what kind of file some bytes are, by content first and by extension second.
+
+use super::lines::Lines;
+use std::path::Path;
+
+/// What a file turned out to be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Protein Data Bank, fixed columns.
+    Pdb,
+    /// A count, a comment, and lines of symbol x y z.
+    Xyz,
+    /// Another known kind: what it is, with its article.
+    Foreign(&'static str),
+    /// Nothing that is known here.
+    Unknown,
+}
+
+/// Bytes at the start that are looked at.
+const HEAD: usize = 1 << 16;
+
+/// First bytes of binary and other formats.
+const MAGIC: &[(&[u8], &str)] = &[
+    (b"\x89PNG", "a PNG picture"),
+    (b"\xff\xd8\xff", "a JPEG picture"),
+    (b"GIF8", "a GIF picture"),
+    (b"%PDF", "a PDF document"),
+    (b"PK\x03\x04", "a zip archive"),
+    (b"\x1f\x8b", "a gzip archive"),
+    (b"BZh", "a bzip2 archive"),
+    (b"\xfd7zXZ", "an xz archive"),
+    (b"\x28\xb5\x2f\xfd", "a zstd archive"),
+    (b"glTF", "a glTF mesh"),
+    (b"\x7fELF", "a program"),
+    (b"\xff\xfe", "a text in UTF-16"),
+    (b"\xfe\xff", "a text in UTF-16"),
+    (
+        b"version https://git-lfs",
+        "a Git LFS pointer instead of the file itself",
+    ),
+    (b"ply", "a PLY mesh"),
+    (b"OFF", "an OFF mesh"),
+    (b"solid ", "an STL mesh"),
+    (b"@<TRIPOS>", "a MOL2 file"),
+    (b"<", "a web page or XML file"),
+    (b"{", "a JSON file"),
+];
+
+/// Extensions of formats whose content does not say clearly what it is.
+const FOREIGN_EXTENSIONS: &[(&str, &str)] = &[
+    ("cif", "an mmCIF file"),
+    ("mmcif", "an mmCIF file"),
+    ("bcif", "a BinaryCIF file"),
+    ("mmtf", "an MMTF file"),
+    ("pqr", "a PQR file"),
+    ("sdf", "an SDF file"),
+    ("mol", "a MOL file"),
+    ("mol2", "a MOL2 file"),
+    ("cube", "a Gaussian cube file"),
+    ("gro", "a GROMACS file"),
+    ("obj", "an OBJ mesh"),
+    ("stl", "an STL mesh"),
+    ("ply", "a PLY mesh"),
+    ("off", "an OFF mesh"),
+    ("3mf", "a 3MF mesh"),
+    ("gltf", "a glTF mesh"),
+    ("glb", "a glTF mesh"),
+];
+
+/// Records that begin lines of PDB files and of nothing else that has them in its first lines.
+const PDB_RECORDS: &[&[u8]] = &[
+    b"HEADER", b"OBSLTE", b"TITLE ", b"SPLIT ", b"CAVEAT", b"COMPND", b"SOURCE", b"KEYWDS",
+    b"EXPDTA", b"AUTHOR", b"REVDAT", b"JRNL  ", b"REMARK", b"SEQRES", b"CRYST1", b"ORIGX1",
+    b"SCALE1", b"MODEL ", b"ATOM  ", b"HETATM", b"CONECT", b"HELIX ", b"SHEET ", b"SSBOND",
+    b"MASTER", b"USER  ",
+];
+
+/// The format of a file; `name` is its path and may be anything.
+pub fn sniff(name: &str, bytes: &[u8]) -> Format {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let head = &bytes[..bytes.len().min(HEAD)];
+    let start = head.trim_ascii_start();
+    if let Some((_, what)) = MAGIC
+        .iter()
+        .find(|(magic, _)| head.starts_with(magic) || start.starts_with(magic))
+    {
+        return Format::Foreign(what);
+    }
+    let extension = Path::new(name)
+        .extension()
+        .map(|extension| extension.to_string_lossy().to_ascii_lowercase())
+        .unwrap_or_default();
+    by_lines(head, &extension).unwrap_or_else(|| by_extension(&extension))
+}
+
+/// What the first lines tell, if they do.
+fn by_lines(head: &[u8], extension: &str) -> Option<Format> {
+    let starts = |line: &[u8], word: &[u8]| {
+        line.get(..word.len())
+            .is_some_and(|start| start.eq_ignore_ascii_case(word))
+    };
+    let mut is_pdb = false;
+    for (number, line) in Lines::new(head) {
+        if starts(line, b"data_")
+            || starts(line, b"_atom_site")
+            || (number == 1 && starts(line, b"loop_"))
+        {
+            return Some(Format::Foreign("an mmCIF file"));
+        }
+        if number == 4
+            && [b"V2000", b"V3000"]
+                .iter()
+                .any(|version| line.trim_ascii_end().ends_with(*version))
+        {
+            return Some(Format::Foreign("a MOL or SDF file"));
+        }
+        is_pdb |= PDB_RECORDS.iter().any(|record| {
+            starts(line, record.trim_ascii_end())
+                && is_record_end(line.get(record.trim_ascii_end().len()))
+        });
+    }
+    if is_pdb {
+        return Some(if extension == "pqr" {
+            Format::Foreign("a PQR file")
+        } else {
+            Format::Pdb
+        });
+    }
+    let first = head
+        .split(|&byte| byte == b'\n' || byte == b'\r')
+        .next()
+        .unwrap_or_default()
+        .trim_ascii();
+    let is_count = !first.is_empty()
+        && first
+            .strip_prefix(b"-")
+            .unwrap_or(first)
+            .iter()
+            .all(u8::is_ascii_digit);
+    // A molecule needs a name only where another format could begin with a number, too.
+    let is_free = !FOREIGN_EXTENSIONS
+        .iter()
+        .any(|(foreign, _)| *foreign == extension);
+    (is_count && is_free).then_some(Format::Xyz)
+}
+
+/// Whether a record name ends here: the line ends, or a space or a digit (`HETATM10000`) follows.
+fn is_record_end(next: Option<&u8>) -> bool {
+    next.is_none_or(|next| next.is_ascii_whitespace() || next.is_ascii_digit())
+}
+
+/// What the name tells.
+fn by_extension(extension: &str) -> Format {
+    match extension {
+        "pdb" | "ent" | "pdb1" | "brk" | "pdbqt" => Format::Pdb,
+        "xyz" => Format::Xyz,
+        _ => FOREIGN_EXTENSIONS
+            .iter()
+            .find(|(foreign, _)| *foreign == extension)
+            .map_or(Format::Unknown, |(_, what)| Format::Foreign(what)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn content_beats_the_extension() {
+        assert_eq!(
+            sniff("a.pdb", b"\x89PNG\r\n\x1a\n"),
+            Format::Foreign("a PNG picture")
+        );
+        assert_eq!(
+            sniff("a.pdb", b"data_1CRN\n#\nloop_\n_atom_site.id\nATOM 1 N"),
+            Format::Foreign("an mmCIF file")
+        );
+        assert_eq!(sniff("a.xyz", b"ATOM      1  N   THR"), Format::Pdb);
+        assert_eq!(sniff("a.txt", b"atom      1  n   thr"), Format::Pdb);
+        assert_eq!(sniff("molecule", b"  3 \n\nC 0 0 0"), Format::Xyz);
+        assert_eq!(sniff("a.pdb", b"-24\n\nC 0 0 0"), Format::Xyz);
+    }
+
+    #[test]
+    fn the_extension_helps_where_content_is_silent() {
+        assert_eq!(sniff("a.PDB", b"hello"), Format::Pdb);
+        assert_eq!(sniff("a.xyz", b"caffeine\n"), Format::Xyz);
+        assert_eq!(
+            sniff("a.cube", b"12\n"),
+            Format::Foreign("a Gaussian cube file")
+        );
+        assert_eq!(
+            sniff("a.pqr", b"ATOM      1  N   THR"),
+            Format::Foreign("a PQR file")
+        );
+        assert_eq!(sniff("a.docx", b"hello"), Format::Unknown);
+        assert_eq!(sniff("", b""), Format::Unknown);
+    }
+}

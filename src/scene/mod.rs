@@ -1,0 +1,156 @@
+//! Scenes: what a style is applied to. No GPU and no JSON in here.
+//!
+//! [`Scene::load`] reads a molecule file (PDB or XYZ), mends what it can, and says in [`Scene::report`] what it mended,
+//! guessed or skipped. What it cannot mend is a [`SceneError`] with file, line and a way out.
+//!
+//! ```text
+//! import/{sniff, pdb, conect, xyz}  ->  builder  ->  { altloc, bonds -> grid, sphere }  ->  molecule
+//! ```
+//! A new format is one file in `import/` that feeds a [`MoleculeBuilder`], and a line in `import/mod.rs`.
+
+mod altloc;
+mod aov;
+mod bonds;
+#[cfg(test)]
+mod bonds_tests;
+mod builder;
+mod camera;
+mod element;
+mod element_table;
+mod error;
+mod grid;
+pub mod guess;
+mod image;
+pub mod import;
+mod light;
+mod molecule;
+mod name;
+mod report;
+mod sphere;
+
+pub use aov::{AovImage, AovName};
+pub use bonds::FileBond;
+pub use builder::{MoleculeBuilder, NewAtom};
+pub use camera::Camera;
+pub use element::{Element, ElementInfo};
+pub use error::SceneError;
+pub use image::{Image, Pixels, write_whole};
+pub use import::{LoadOptions, ModelChoice};
+pub use light::{Light, LightPlace, Lighting, Shadow};
+pub use molecule::{Atom, Bond, Molecule, Residue, Sphere};
+pub use name::Name;
+pub use report::{Note, NoteKind, Report};
+pub use sphere::bounding_sphere;
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// The largest file that is read, in MiB: 20 times the largest entry that the PDB keeps in its old format.
+const MAX_FILE_MIB: u64 = 2048;
+
+/// A molecule as a file gives it, ready to be drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// The molecule; it has at least one atom.
+    pub molecule: Molecule,
+    /// What was mended, guessed or skipped.
+    pub report: Report,
+    /// The file's name without folder and extension.
+    pub name: String,
+}
+
+impl Scene {
+    /// Reads a file: its first model, alternate locations with the highest occupancy.
+    ///
+    /// # Errors
+    /// Every [`SceneError`] but `NoSuchModel`.
+    pub fn load(path: &Path) -> Result<Self, SceneError> {
+        Self::load_with(path, &LoadOptions::default())
+    }
+
+    /// Reads a file as the options say.
+    ///
+    /// # Errors
+    /// Every [`SceneError`].
+    pub fn load_with(path: &Path, options: &LoadOptions) -> Result<Self, SceneError> {
+        let bytes = read(path)?;
+        Self::from_bytes_with(&path.to_string_lossy(), &bytes, options)
+    }
+
+    /// Reads a file that is already in memory; `name` is its path, for messages and where the content does not tell the format.
+    ///
+    /// # Errors
+    /// `Empty`, `NoAtoms`, `Malformed`, `Unsupported`.
+    pub fn from_bytes(name: &str, bytes: &[u8]) -> Result<Self, SceneError> {
+        Self::from_bytes_with(name, bytes, &LoadOptions::default())
+    }
+
+    /// Reads a file that is already in memory, as the options say.
+    ///
+    /// # Errors
+    /// `Empty`, `NoAtoms`, `Malformed`, `Unsupported`, `NoSuchModel`.
+    pub fn from_bytes_with(
+        name: &str,
+        bytes: &[u8],
+        options: &LoadOptions,
+    ) -> Result<Self, SceneError> {
+        import::read(name, bytes, options)
+    }
+}
+
+/// The bytes of a file, never more than [`MAX_FILE_MIB`] whatever the file system says of its size.
+fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
+    let fail = |error| SceneError::from_io(path, error);
+    let file = File::open(path).map_err(fail)?;
+    let metadata = file.metadata().map_err(fail)?;
+    let too_large = || SceneError::TooLarge {
+        file: path.display().to_string(),
+        limit_mib: MAX_FILE_MIB,
+    };
+    let limit = MAX_FILE_MIB << 20;
+    if metadata.is_dir() {
+        return Err(SceneError::IsDirectory {
+            file: path.display().to_string(),
+        });
+    }
+    if metadata.len() > limit {
+        return Err(too_large());
+    }
+    let mut bytes = Vec::with_capacity(metadata.len() as usize);
+    file.take(limit + 1).read_to_end(&mut bytes).map_err(fail)?;
+    if bytes.len() as u64 > limit {
+        Err(too_large())
+    } else {
+        Ok(bytes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_missing_file_and_a_folder_are_named_as_such() {
+        assert!(matches!(
+            Scene::load(Path::new("/no/such/file.pdb")),
+            Err(SceneError::NotFound { .. })
+        ));
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+        assert!(matches!(
+            Scene::load(folder),
+            Err(SceneError::IsDirectory { .. })
+        ));
+    }
+
+    #[test]
+    fn messages_name_the_file_and_a_way_out() {
+        let message = Scene::load(Path::new("/no/such/file.pdb"))
+            .expect_err("missing")
+            .to_string();
+        assert!(
+            message.starts_with("/no/such/file.pdb: no such file; "),
+            "{message}"
+        );
+    }
+}

@@ -1,0 +1,198 @@
+//! What an importer mended, guessed or skipped, with the lines where it did.
+
+use std::fmt;
+
+/// How many lines of one kind are named; the rest is only counted, so that a damaged million-atom file costs no memory.
+const LISTED_PER_KIND: usize = 5;
+
+macro_rules! note_kinds {
+    ($($(#[$doc:meta])* $kind:ident => $one:literal / $many:literal : $rest:literal,)*) => {
+        /// A kind of thing that was mended, guessed or skipped.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum NoteKind { $($(#[$doc])* $kind,)* }
+
+        impl NoteKind {
+            /// Every kind, in the order of reports.
+            pub const ALL: &'static [Self] = &[$(Self::$kind,)*];
+
+            /// Singular, plural, and the end of the sentence.
+            const fn words(self) -> (&'static str, &'static str, &'static str) {
+                match self { $(Self::$kind => ($one, $many, $rest),)* }
+            }
+        }
+    };
+}
+
+note_kinds! {
+    /// A coordinate that is blank, `****`, NaN or no number.
+    BadCoordinate => "atom" / "atoms": "skipped: a coordinate is no number",
+    /// An atom line that ends inside its coordinates.
+    ShortLine => "atom" / "atoms": "skipped: the line is cut short",
+    /// Less occupied alternate locations.
+    AlternateLocation => "alternate position" / "alternate positions": "left out: the most occupied one of each is drawn",
+    /// Models or frames that were not asked for.
+    ModelSkipped => "other model" / "other models": "in the file, not drawn (--model chooses)",
+    /// A model that was not closed, or an atom outside of any.
+    ModelMended => "model" / "models": "not properly opened or closed, mended",
+    /// A residue number that is none.
+    BadResidueNumber => "residue number" / "residue numbers": "unreadable, taken as 0",
+    /// No element given; it was guessed from the atom's name.
+    ElementGuessed => "atom" / "atoms": "without an element: guessed from the name",
+    /// An element symbol that no element has; guessed from the atom's name.
+    ElementCorrected => "atom" / "atoms": "with a symbol that no element has: guessed from the name",
+    /// The element stays unknown; drawn in pink with carbon's size.
+    ElementUnknown => "atom" / "atoms": "of unknown element, drawn in pink with carbon's size",
+    /// Lower-case records.
+    LowerCase => "line" / "lines": "in lower case, read as upper case",
+    /// Serial numbers used more than once.
+    DuplicateSerial => "atom" / "atoms": "with a serial number that another atom has too",
+    /// A `CONECT` record that is no number, or names the atom itself.
+    BadBondRecord => "bond record" / "bond records": "ignored: no two atoms",
+    /// A `CONECT` record to an atom that is missing or ambiguous.
+    BondToNowhere => "bond record" / "bond records": "ignored: the atom is missing or its serial number is not unique",
+    /// A bond of the file that is several times too long.
+    LongBond => "bond of the file" / "bonds of the file": "left out: several times too long, probably across the edge of a cell",
+    /// Crowded atoms: not all neighbours were looked at.
+    Crowded => "atom" / "atoms": "too crowded for bonds by distance: only some neighbours were tried",
+    /// The count line of an XYZ file was mended.
+    CountMended => "place" / "places": "where count or comment line and atoms disagree, mended",
+    /// Text after the last atom that is neither an atom nor a frame.
+    TrailingText => "line" / "lines": "after the atoms not read",
+    /// Positions that single precision rounds visibly.
+    CoarsePositions => "molecule" / "molecules": "so wide that positions are rounded",
+}
+
+/// One thing that was mended, guessed or skipped.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Note {
+    /// Line of the file, from 1, if it has one.
+    pub line: Option<u32>,
+    /// What kind of thing.
+    pub kind: NoteKind,
+    /// What was there, or empty.
+    pub text: String,
+}
+
+/// All notes about one file.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Report {
+    /// The first few notes of each kind, in the order of the file.
+    pub entries: Vec<Note>,
+    counts: [u32; NoteKind::ALL.len()],
+}
+
+impl Report {
+    /// Notes one thing; `text` is asked for only if the note is listed.
+    pub fn note(
+        &mut self,
+        kind: NoteKind,
+        line: impl Into<Option<u32>>,
+        text: impl FnOnce() -> String,
+    ) {
+        let count = &mut self.counts[kind as usize];
+        *count = count.saturating_add(1);
+        if *count as usize <= LISTED_PER_KIND {
+            self.entries.push(Note {
+                line: line.into(),
+                kind,
+                text: text(),
+            });
+        }
+    }
+
+    /// Notes `count` things of a kind that have no lines.
+    pub fn note_many(&mut self, kind: NoteKind, count: u32, text: impl FnOnce() -> String) {
+        if count > 0 {
+            self.note(kind, None, text);
+            self.counts[kind as usize] = self.counts[kind as usize].saturating_add(count - 1);
+        }
+    }
+
+    /// How many things of a kind were noted, listed or not.
+    pub fn count(&self, kind: NoteKind) -> u32 {
+        self.counts[kind as usize]
+    }
+
+    /// Whether nothing was noted.
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+}
+
+impl fmt::Display for Report {
+    /// One line per kind, each ended by a line feed: `3 atoms skipped: a coordinate is no number (line 278: x = "nan"; ...)`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for &kind in NoteKind::ALL {
+            let count = self.count(kind);
+            if count == 0 {
+                continue;
+            }
+            let (one, many, rest) = kind.words();
+            write!(f, "{count} {} {rest}", if count == 1 { one } else { many })?;
+            let listed = self.entries.iter().filter(|note| note.kind == kind);
+            let places: Vec<String> = listed
+                .map(Note::place)
+                .filter(|place| !place.is_empty())
+                .collect();
+            if !places.is_empty() {
+                let more = if count as usize > LISTED_PER_KIND {
+                    "; ..."
+                } else {
+                    ""
+                };
+                write!(f, " ({}{more})", places.join("; "))?;
+            }
+            writeln!(f)?;
+        }
+        Ok(())
+    }
+}
+
+impl Note {
+    /// Line and text, as far as there are any.
+    fn place(&self) -> String {
+        match (self.line, self.text.as_str()) {
+            (None, text) => text.to_string(),
+            (Some(line), "") => format!("line {line}"),
+            (Some(line), text) => format!("line {line}: {text}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_million_notes_list_five() {
+        let mut report = Report::default();
+        for line in 1..=1_000_000 {
+            report.note(NoteKind::BadCoordinate, line, || "x = \"nan\"".to_string());
+        }
+        assert_eq!(report.entries.len(), LISTED_PER_KIND);
+        assert_eq!(report.count(NoteKind::BadCoordinate), 1_000_000);
+        assert!(report.to_string().starts_with(
+            "1000000 atoms skipped: a coordinate is no number (line 1: x = \"nan\"; "
+        ));
+    }
+
+    #[test]
+    fn each_kind_prints_one_line_in_good_english() {
+        let mut report = Report::default();
+        assert!(report.is_empty() && report.to_string().is_empty());
+        report.note(NoteKind::ShortLine, 7, String::new);
+        report.note_many(NoteKind::ModelSkipped, 19, String::new);
+        report.note_many(NoteKind::Crowded, 0, String::new);
+        assert_eq!(
+            report.to_string(),
+            "1 atom skipped: the line is cut short (line 7)\n19 other models in the file, not drawn (--model chooses)\n"
+        );
+    }
+
+    #[test]
+    fn kinds_stand_in_the_order_of_their_numbers() {
+        for (index, &kind) in NoteKind::ALL.iter().enumerate() {
+            assert_eq!(kind as usize, index);
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! Object shaders: one file each, with its parameters, its GPU struct and the name of its WGSL; found through [`SHADERS`].
+//!
+//! To add one: `src/shading/NAME.rs`, `shaders/objects/NAME.wgsl` with `fn NAME_shade(s: Surface, m: NAMEMaterial) ->
+//! vec3<f32>` (linear light), a twin in `tests/twins/NAME.rs`, and one line in [`SHADERS`].
+
+pub mod basic;
+pub mod brdf_table;
+pub mod environment;
+pub mod toon;
+pub mod unlit;
+
+use glam::Vec3;
+
+use crate::config::param::{BaseColor, Length, Param, Srgba, Values};
+use crate::gpu::{Gpu, GpuError, StructInfo, Wgsl};
+
+/// What a material needs to know beside its own parameters.
+#[derive(Debug, Clone, Copy)]
+pub struct MaterialContext {
+    /// 2 to the power of the camera's exposure in stops.
+    pub exposure_factor: f32,
+}
+
+/// An outline by enlarged back faces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hull {
+    /// Linear RGB.
+    pub color: Vec3,
+    /// Width in the picture or the scene.
+    pub width: Length,
+}
+
+/// What a shader binds beside its materials.
+pub enum ResourceData {
+    /// A uniform buffer with this content.
+    Uniform(Vec<u8>),
+    /// A texture of 32-bit float RGBA, with its size.
+    Texture([u32; 2], Vec<u8>),
+}
+
+/// A binding of a shader: the WGSL declaration after the binding's number, and its content.
+pub struct Resource {
+    /// Such as `var<uniform> environment: Environment;`.
+    pub declaration: &'static str,
+    /// Makes the content.
+    pub data: fn() -> ResourceData,
+}
+
+/// One way to shade objects.
+pub trait ObjectShader: Sync {
+    /// Its name in style files, and the stem of its files and of its WGSL function.
+    fn name(&self) -> &'static str;
+    /// One sentence for the manual.
+    fn doc(&self) -> &'static str;
+    /// Its parameters, beside [`COMMON`].
+    fn params(&self) -> &'static [Param];
+    /// WGSL that its entry needs, its own file last.
+    fn wgsl(&self) -> &'static [Wgsl];
+    /// The WGSL struct of its materials.
+    fn material_info(&self) -> StructInfo;
+    /// The bytes of one material.
+    fn material(&self, values: &Values, context: &MaterialContext) -> Vec<u8>;
+    /// Its outline by enlarged back faces, if it has one.
+    fn hull(&self, _values: &Values) -> Option<Hull> {
+        None
+    }
+    /// Bindings beside its materials.
+    fn resources(&self) -> &'static [Resource] {
+        &[]
+    }
+    /// The structs that those bindings hold.
+    fn resource_infos(&self) -> Vec<StructInfo> {
+        Vec::new()
+    }
+}
+
+/// All object shaders, in the order of their numbers on the GPU.
+pub const SHADERS: &[&dyn ObjectShader] = &[&basic::Basic, &toon::Toon, &unlit::Unlit];
+
+/// The shader of what nothing selects.
+pub const DEFAULT_SHADER: &str = "basic";
+
+/// Place in [`SHADERS`] of a name.
+pub fn shader_index(name: &str) -> Option<usize> {
+    SHADERS.iter().position(|shader| shader.name() == name)
+}
+
+/// `base_color`, which every object shader has.
+pub const BASE_COLOR: Param = Param::base_color("base_color", BaseColor::Element)
+    .doc("Colour of the object: element (CPK), chain, residue, part, material, or one colour.");
+
+/// Linear RGB of a colour.
+pub fn linear(color: Srgba) -> Vec3 {
+    let [r, g, b, _] = color.to_linear();
+    Vec3::new(r, g, b)
+}
+
+/// Linear RGB and 1, or zeros where the parameter is unset.
+pub fn optional_linear(color: Option<Srgba>) -> [f32; 4] {
+    color.map_or([0.0; 4], |color| linear(color).extend(1.0).to_array())
+}
+
+/// The WGSL text that declares a shader's material array.
+pub fn material_declaration(shader: &dyn ObjectShader) -> String {
+    format!("var<storage, read> {}_materials: array<{}>;", shader.name(), shader.material_info().name)
+}
+
+/// Creates the texture or buffer of a resource.
+///
+/// # Errors
+/// [`GpuError`] where it does not fit the device.
+pub fn upload(gpu: &Gpu, resource: &Resource) -> Result<UploadedResource, GpuError> {
+    match (resource.data)() {
+        ResourceData::Uniform(bytes) => {
+            let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(resource.declaration),
+                size: bytes.len().next_multiple_of(16) as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            gpu.queue.write_buffer(&buffer, 0, &bytes);
+            Ok(UploadedResource::Uniform(buffer))
+        }
+        ResourceData::Texture(size, bytes) => {
+            let extent = wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 };
+            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(resource.declaration),
+                size: extent,
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: wgpu::TextureFormat::Rgba32Float,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+                view_formats: &[],
+            });
+            gpu.queue.write_texture(
+                texture.as_image_copy(),
+                &bytes,
+                wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size[0] * 16), rows_per_image: None },
+                extent,
+            );
+            Ok(UploadedResource::Texture(texture.create_view(&Default::default())))
+        }
+    }
+}
+
+/// A resource on the GPU.
+pub enum UploadedResource {
+    /// A uniform buffer.
+    Uniform(wgpu::Buffer),
+    /// A texture of 32-bit floats, not filtered.
+    Texture(wgpu::TextureView),
+}

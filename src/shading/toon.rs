@@ -1,0 +1,106 @@
+//! `toon`: light in a few flat bands with two kinds of outline [Prost2016 §4.1], and the shadow and highlight colours
+//! of [Livny2007 §3.1].
+//!
+//! Where we differ from the paper: see `shaders/objects/toon.wgsl`. Twin: `tests/twins/toon.rs`.
+
+use super::{BASE_COLOR, Hull, MaterialContext, ObjectShader, linear, optional_linear};
+use crate::config::param::{Param, Values};
+use crate::gpu::{GpuStruct, StructInfo, Wgsl};
+use crate::{gpu_struct, wgsl};
+
+/// Values of `levels`, in the order of their numbers on the GPU.
+const LEVELS: &[&str] = &["floor", "centre", "full"];
+
+/// The parameters of `toon`.
+pub const PARAMS: &[Param] = &[
+    BASE_COLOR,
+    Param::number("opacity", 1.0).range(0.0, 1.0).not_drawn_yet().doc("1 is opaque, 0 invisible."),
+    Param::color("color", [0, 0, 0]).doc("Colour of both outlines."),
+    Param::length("hull_size", "0pt").doc("Width of the outline around the object; 0 draws none."),
+    Param::number("outline_bias", 0.0)
+        .range(0.0, 1.0)
+        .doc("Cosine between surface and view below which the surface itself turns into outline; 0 draws none."),
+    Param::number("scale", 0.5).range(0.0, 10.0).doc("Weight of the cosine between surface and light (alpha)."),
+    Param::number("bias", 0.5).range(0.0, 10.0).doc("Light that is there without the cosine (beta)."),
+    Param::number("exponent", 1.0).range(0.01, 100.0).doc("Moves the borders between the bands (gamma)."),
+    Param::count("steps", 4).range(1.0, 256.0).doc("How many bands; 1 is flat."),
+    Param::choice("levels", LEVELS, "floor")
+        .doc("Brightness of a band: of its darker border as published, its centre, or spread from black to full."),
+    Param::optional_color("shadow_color")
+        .doc("Multiplies the colour where no light is; unset, what is unlit turns black."),
+    Param::optional_color("specular_color").doc("Colour of a flat highlight; unset, there is none."),
+    Param::number("specular_limit", 0.95)
+        .range(-1.0, 1.0)
+        .doc("Cosine between mirrored light and view above which the highlight is drawn."),
+];
+
+gpu_struct! {
+    "objects/toon.wgsl",
+    /// See `shaders/objects/toon.wgsl`.
+    pub struct ToonMaterial {
+        /// Linear RGB of the outline.
+        pub color: [f32; 4],
+        /// Linear RGB of the unlit end; alpha 0: black.
+        pub shadow_color: [f32; 4],
+        /// Linear RGB of the highlight; alpha 0: none.
+        pub specular_color: [f32; 4],
+        /// Alpha of Eq. 1.
+        pub scale: f32,
+        /// Beta of Eq. 1.
+        pub bias: f32,
+        /// Gamma of Eq. 1.
+        pub exponent: f32,
+        /// s of Eq. 2.
+        pub steps: f32,
+        /// Threshold of the dot-product outline.
+        pub outline_bias: f32,
+        /// Threshold of the highlight.
+        pub specular_limit: f32,
+        /// 0 floor, 1 centre, 2 full.
+        pub levels: u32,
+        /// 0..1.
+        pub opacity: f32,
+    }
+}
+
+/// The shader's registry entry.
+pub struct Toon;
+
+impl ObjectShader for Toon {
+    fn name(&self) -> &'static str {
+        "toon"
+    }
+    fn doc(&self) -> &'static str {
+        "Comic shading: flat bands of light, outlines by hull or by dot product."
+    }
+    fn params(&self) -> &'static [Param] {
+        PARAMS
+    }
+    fn wgsl(&self) -> &'static [Wgsl] {
+        const FILES: &[Wgsl] = &[wgsl!("objects/toon.wgsl")];
+        FILES
+    }
+    fn material_info(&self) -> StructInfo {
+        ToonMaterial::info()
+    }
+    fn material(&self, values: &Values, _context: &MaterialContext) -> Vec<u8> {
+        bytemuck::bytes_of(&ToonMaterial {
+            color: linear(values.color("color")).extend(1.0).to_array(),
+            shadow_color: optional_linear(values.optional_color("shadow_color")),
+            specular_color: optional_linear(values.optional_color("specular_color")),
+            scale: values.number("scale") as f32,
+            bias: values.number("bias") as f32,
+            exponent: values.number("exponent") as f32,
+            steps: values.count("steps") as f32,
+            outline_bias: values.number("outline_bias") as f32,
+            specular_limit: values.number("specular_limit") as f32,
+            levels: LEVELS.iter().position(|level| *level == values.choice("levels")).unwrap_or(0) as u32,
+            opacity: values.number("opacity") as f32,
+        })
+        .to_vec()
+    }
+    fn hull(&self, values: &Values) -> Option<Hull> {
+        let width = values.length("hull_size");
+        (width.number() > 0.0).then(|| Hull { color: linear(values.color("color")), width })
+    }
+}
