@@ -39,8 +39,9 @@ struct LightSample {
     inverse_distance: f32,
 }
 
+// A constant of the pipeline, so that the loop over the lights unrolls.
 fn light_count() -> u32 {
-    return lights.count;
+    return LIGHT_COUNT;
 }
 
 fn ambient_light() -> vec3<f32> {
@@ -51,7 +52,7 @@ fn light_at(i: u32, s: Surface) -> LightSample {
     let light = lights.items[i];
     var sample: LightSample;
     sample.radiance = light.color;
-    if light.kind == LIGHT_POINT {
+    if POINT_LIGHTS && light.kind == LIGHT_POINT {
         let offset = light.position_view - s.position_view;
         let distance = max(length(offset), 1e-6);
         sample.to_light = offset / distance;
@@ -67,7 +68,7 @@ fn light_at(i: u32, s: Surface) -> LightSample {
         sample.inverse_distance = 0.0;
     }
     sample.visibility = 1.0;
-    if light.shadow >= 0 {
+    if SHADOWS && light.shadow >= 0 {
         sample.visibility = 1.0 - light.strength * (1.0 - shadow_light(light, s));
     }
     return sample;

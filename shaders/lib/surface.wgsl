@@ -32,7 +32,7 @@ fn to_viewer_step(ray: Ray, step: vec3<f32>, orthographic: f32) -> vec3<f32> {
     return -(step - toward * dot(toward, step)) * inverse * (1.0 - orthographic);
 }
 
-// The surface that `id` names along `ray`; `material` and colour are filled by the caller.
+// The surface that `id` names along `ray`. ATOMS and CONNECTORS say which kinds the scene has at all.
 fn surface_at(ray: Ray, id: u32) -> Surface {
     var s: Surface;
     let index = id & INDEX_MASK;
@@ -41,14 +41,14 @@ fn surface_at(ray: Ray, id: u32) -> Surface {
     // Curvature of a sphere is 1/r both ways, of a cylinder 1/r across its axis.
     var axis = vec3<f32>(0.0);
     var bend = 0.0;
-    if (id >> 29u) == KIND_ATOM {
+    if ATOMS && (!CONNECTORS || (id >> 29u) == KIND_ATOM) {
         let atom = atoms[index];
         let center = to_view(view, atom.position_world);
         t = first_beyond(sphere_span(ray, center, atom.radius), view.near);
         normal = sphere_normal(ray, t, center, atom.radius);
         s.base_color = unpack_linear(atom.color);
         bend = 1.0 / atom.radius;
-    } else {
+    } else if CONNECTORS {
         let connector = connectors[index];
         let a = to_view(view, connector.a_world);
         let b = to_view(view, connector.b_world);
@@ -76,10 +76,4 @@ fn surface_at(ray: Ray, id: u32) -> Surface {
     s.to_viewer_dx = to_viewer_step(ray, dx, view.orthographic);
     s.to_viewer_dy = to_viewer_step(ray, dy, view.orthographic);
     return s;
-}
-
-fn object_material(id: u32) -> u32 {
-    let kind = id >> 29u;
-    if kind == KIND_ATOM || kind == KIND_ATOM_HULL { return atoms[id & INDEX_MASK].material; }
-    return connectors[id & INDEX_MASK].material;
 }

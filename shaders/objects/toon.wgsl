@@ -1,4 +1,5 @@
 // Comic shading: light in a few flat bands, an outline where the surface turns away.
+// TOON_EXPONENT, TOON_SPECULAR and TOON_OUTLINE say whether any material of the style uses those at all.
 
 struct ToonMaterial {
     // Linear RGB of the outline.
@@ -17,6 +18,11 @@ struct ToonMaterial {
     // 0 floor, 1 centre, 2 full.
     levels: u32,
     opacity: f32,
+    // (scale + bias)^exponent, the brightest level, 0..1 or more.
+    top: f32,
+    _pad0: f32,
+    _pad1: f32,
+    _pad2: f32,
 }
 
 // Mean of the staircase min(floor(x), steps - 1), 0 for x < 0, over a pixel across which x changes by
@@ -40,18 +46,21 @@ fn band_integral(x: f32, steps: f32) -> f32 {
 // below 0, and the top band reaches down to its floor instead of being the single point x = 1.
 // `gradient` is how fast n.l changes over one pixel.
 fn toon_level(cosine: f32, gradient: f32, m: ToonMaterial) -> f32 {
+    if m.scale == 0.0 || m.steps < 2.0 { return min(m.top, 1.0); }
     let reach = m.scale + m.bias;
-    let top = pow(max(reach, 0.0), m.exponent);
-    if m.scale == 0.0 || m.steps < 2.0 { return min(top, 1.0); }
     let share = max(m.scale * cosine + m.bias, 0.0) / reach;
-    let x = m.steps * pow(share, m.exponent);
+    var x = m.steps * share;
     // d x / d n.l, times n.l per pixel.
-    let slope = x * m.exponent * abs(m.scale) / max(share * reach, 1e-6);
+    var slope = m.steps * m.scale / reach;
+    if TOON_EXPONENT {
+        x = m.steps * pow(share, m.exponent);
+        slope = x * m.exponent * m.scale / max(share * reach, 1e-6);
+    }
     let k = band_mean(x, min(slope * gradient, m.steps), m.steps);
     var level = k / m.steps;
     if m.levels == 1u { level = (k + 0.5) / m.steps; }
     if m.levels == 2u { level = k / (m.steps - 1.0); }
-    return min(top * level, 1.0);
+    return min(m.top * level, 1.0);
 }
 
 fn toon_shade(s: Surface, m: ToonMaterial) -> vec3<f32> {
@@ -68,7 +77,7 @@ fn toon_shade(s: Surface, m: ToonMaterial) -> vec3<f32> {
         let cosine_dy = dot(s.normal_dy, l) + dot(s.normal_view, turn_dy);
         let level = toon_level(cosine, length(vec2<f32>(cosine_dx, cosine_dy)), m);
         light += level * sample.visibility * sample.radiance;
-        if m.specular_color.a > 0.0 && cosine > 0.0 {
+        if TOON_SPECULAR && m.specular_color.a > 0.0 && cosine > 0.0 {
             // [Livny2007 §4, from the prose: reflected, and only where lit]
             let mirrored = 2.0 * cosine * s.normal_view - l;
             let mirrored_dx = 2.0 * (cosine_dx * s.normal_view + cosine * s.normal_dx) - turn_dx;
@@ -84,8 +93,10 @@ fn toon_shade(s: Surface, m: ToonMaterial) -> vec3<f32> {
     if m.shadow_color.a > 0.0 {
         color = s.base_color * mix(m.shadow_color.rgb, vec3<f32>(1.0), min(light, vec3<f32>(1.0)));
     }
-    color = mix(color, m.specular_color.rgb, highlight * m.specular_color.a);
-    if m.outline_bias > 0.0 {
+    if TOON_SPECULAR {
+        color = mix(color, m.specular_color.rgb, highlight * m.specular_color.a);
+    }
+    if TOON_OUTLINE && m.outline_bias > 0.0 {
         let facing = dot(s.normal_view, s.to_viewer);
         let facing_dx = dot(s.normal_dx, s.to_viewer) + dot(s.normal_view, s.to_viewer_dx);
         let facing_dy = dot(s.normal_dy, s.to_viewer) + dot(s.normal_view, s.to_viewer_dy);

@@ -51,7 +51,8 @@ pub(super) struct Args {
 
 fn parse_aov(text: &str) -> Result<(AovName, PathBuf), String> {
     let names = || AovName::ALL.map(|(name, _)| name).join(", ");
-    let (name, file) = text.split_once('=').ok_or_else(|| format!("write it as NAME=FILE.exr, NAME one of {}", names()))?;
+    let (name, file) =
+        text.split_once('=').ok_or_else(|| format!("write it as NAME=FILE.exr, NAME one of {}", names()))?;
     let aov = AovName::ALL.iter().find(|(known, _)| *known == name);
     match aov {
         Some((_, aov)) if !file.is_empty() => Ok((*aov, PathBuf::from(file))),
@@ -85,12 +86,8 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     inputs::print_warnings(&style, &loaded.scene);
     let load_ms = loaded.ms;
 
-    let request = Request {
-        size: args.size.0,
-        samples: args.samples,
-        transparent: args.transparent,
-        wide: args.bits == "16",
-    };
+    let request =
+        Request { size: args.size.0, samples: args.samples, transparent: args.transparent, wide: args.bits == "16" };
     let mut engine = Engine::new(gpu, loaded.scene, style);
     if let Some(limit) = engine.limits_exceeded() {
         eprintln!("{}: warning: {limit}", args.style);

@@ -18,30 +18,19 @@ pub enum Orient {
 
 /// The keys of `camera`.
 pub const PARAMS: &[Param] = &[
-    Param::boolean("orthographic", false)
-        .or_text()
-        .doc("Parallel projection instead of perspective."),
+    Param::boolean("orthographic", false).or_text().doc("Parallel projection instead of perspective."),
     Param::color("bgcolor", [255, 255, 255]).doc("Colour of the background."),
     // Below a degree, 32-bit depth fails; near 180 the picture is all edge.
-    Param::number("fov", 35.0)
-        .range(1.0, 150.0)
-        .unit("degrees")
-        .doc("Vertical field of view of a perspective camera."),
+    Param::number("fov", 35.0).range(1.0, 150.0).unit("degrees").doc("Vertical field of view of a perspective camera."),
     Param::number("exposure", 0.0)
         .range(-10.0, 10.0)
         .unit("stops")
         .doc("Brightness of what basic draws; +1 doubles it."),
-    Param::number("zoom", 1.0)
-        .range(0.01, 1000.0)
-        .doc("Magnification; 1 frames the whole scene."),
+    Param::number("zoom", 1.0).range(0.01, 1000.0).doc("Magnification; 1 frames the whole scene."),
     Param::choice("orient", &["default", "principal"], "default")
         .doc("principal turns flat things to face the camera."),
-    Param::optional_vector("position")
-        .unit("radii")
-        .doc("Where the camera is, in radii from the sphere's centre."),
-    Param::optional_vector("target")
-        .unit("radii")
-        .doc("Where it looks, in radii from the sphere's centre."),
+    Param::optional_vector("position").unit("radii").doc("Where the camera is, in radii from the sphere's centre."),
+    Param::optional_vector("target").unit("radii").doc("Where it looks, in radii from the sphere's centre."),
     Param::optional_vector("up").doc("Which direction is up in the picture."),
 ];
 
@@ -89,18 +78,11 @@ impl Camera {
         let camera = Self::new(&reader.table("camera", members, PARAMS));
         if camera.up == Some([0.0; 3]) {
             let at = node.get("up").unwrap_or(node).span;
-            reader.wrong(
-                at,
-                Problem::Meaningless("\"up\" is no direction: one of its numbers must not be 0"),
-            );
+            reader.wrong(at, Problem::Meaningless("\"up\" is no direction: one of its numbers must not be 0"));
         }
-        if camera
-            .position
-            .is_some_and(|position| position == camera.target.unwrap_or([0.0; 3]))
-        {
+        if camera.position.is_some_and(|position| position == camera.target.unwrap_or([0.0; 3])) {
             let at = node.get("position").unwrap_or(node).span;
-            let reason =
-                "\"position\" and \"target\" are the same point, so the camera looks nowhere";
+            let reason = "\"position\" and \"target\" are the same point, so the camera looks nowhere";
             reader.wrong(at, Problem::Meaningless(reason));
         }
         camera

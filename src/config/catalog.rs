@@ -54,31 +54,20 @@ impl<'a> Catalog<'a> {
 
     /// The shader that stands in.
     pub(super) fn basic(&self) -> &'a CatalogEntry {
-        self.get(BASIC)
-            .expect("every catalog has basic, which Catalog::check finds in a test")
+        self.get(BASIC).expect("every catalog has basic, which Catalog::check finds in a test")
     }
 
     /// What is wrong with the catalog and its tables; empty if nothing is. For a test of whoever builds one.
     pub fn check(&self) -> Vec<String> {
         let mut wrong = Vec::new();
-        if !self
-            .get(BASIC)
-            .is_some_and(|entry| entry.drawn && entry.role == Role::Object)
-        {
+        if !self.get(BASIC).is_some_and(|entry| entry.drawn && entry.role == Role::Object) {
             wrong.push(format!("{BASIC:?} is not a drawn shader of objects"));
         }
         for (i, entry) in self.shaders.iter().enumerate() {
-            if self.shaders[..i]
-                .iter()
-                .any(|earlier| earlier.name == entry.name)
-            {
+            if self.shaders[..i].iter().any(|earlier| earlier.name == entry.name) {
                 wrong.push(format!("{:?} is registered twice", entry.name));
             }
-            wrong.extend(
-                check_table(entry.params)
-                    .into_iter()
-                    .map(|reason| format!("{}: {reason}", entry.name)),
-            );
+            wrong.extend(check_table(entry.params).into_iter().map(|reason| format!("{}: {reason}", entry.name)));
         }
         wrong
     }
@@ -90,22 +79,8 @@ mod tests {
 
     #[test]
     fn a_catalog_without_basic_is_found() {
-        let entry = CatalogEntry {
-            name: "fog",
-            role: Role::PostEffect,
-            params: &[],
-            drawn: true,
-        };
-        let catalog = Catalog {
-            shaders: &[entry, entry],
-            kinds: &[],
-        };
-        assert_eq!(
-            catalog.check(),
-            [
-                "\"basic\" is not a drawn shader of objects",
-                "\"fog\" is registered twice"
-            ]
-        );
+        let entry = CatalogEntry { name: "fog", role: Role::PostEffect, params: &[], drawn: true };
+        let catalog = Catalog { shaders: &[entry, entry], kinds: &[] };
+        assert_eq!(catalog.check(), ["\"basic\" is not a drawn shader of objects", "\"fog\" is registered twice"]);
     }
 }

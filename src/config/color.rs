@@ -12,20 +12,14 @@ pub struct Srgba {
 impl Srgba {
     /// An opaque colour from bytes.
     pub const fn from_bytes([r, g, b]: [u8; 3]) -> Self {
-        Self {
-            rgba: [r as f32 / 255.0, g as f32 / 255.0, b as f32 / 255.0, 1.0],
-        }
+        Self { rgba: [r as f32 / 255.0, g as f32 / 255.0, b as f32 / 255.0, 1.0] }
     }
 
     /// The colour as shading needs it: linear light, straight alpha [IEC 61966-2-1].
     pub fn to_linear(self) -> [f32; 4] {
         let [r, g, b, a] = self.rgba;
         let linear = |c: f32| {
-            if c <= 0.04045 {
-                c / 12.92
-            } else {
-                ((c + 0.055) / 1.055).powf(2.4)
-            }
+            if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
         };
         [linear(r), linear(g), linear(b), a]
     }
@@ -39,20 +33,14 @@ impl Srgba {
             Some(digits) => is_hex(digits),
             None => text.bytes().all(|b| b.is_ascii_alphabetic()) && !is_hex(text),
         };
-        let color = accepted
-            .then(|| csscolorparser::parse(text).ok())
-            .flatten()?;
-        Some(Self {
-            rgba: [color.r, color.g, color.b, color.a],
-        })
+        let color = accepted.then(|| csscolorparser::parse(text).ok()).flatten()?;
+        Some(Self { rgba: [color.r, color.g, color.b, color.a] })
     }
 }
 
 /// The CSS names of colours.
 pub fn css_names() -> impl Iterator<Item = &'static str> {
-    csscolorparser::NAMED_COLORS
-        .keys()
-        .map(|name| name.as_str())
+    csscolorparser::NAMED_COLORS.keys().map(|name| name.as_str())
 }
 
 impl fmt::Display for Srgba {
@@ -60,11 +48,7 @@ impl fmt::Display for Srgba {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [r, g, b, a] = self.rgba.map(|c| (c * 255.0).round() as u8);
         write!(f, "#{r:02x}{g:02x}{b:02x}")?;
-        if a == 255 {
-            Ok(())
-        } else {
-            write!(f, "{a:02x}")
-        }
+        if a == 255 { Ok(()) } else { write!(f, "{a:02x}") }
     }
 }
 
@@ -91,17 +75,8 @@ impl BaseColor {
 
     /// The source of a name.
     pub fn from_name(name: &str) -> Option<Self> {
-        let sources = [
-            Self::Element,
-            Self::Chain,
-            Self::Residue,
-            Self::Part,
-            Self::Material,
-        ];
-        Self::NAMES
-            .iter()
-            .position(|n| *n == name)
-            .map(|i| sources[i])
+        let sources = [Self::Element, Self::Chain, Self::Residue, Self::Part, Self::Material];
+        Self::NAMES.iter().position(|n| *n == name).map(|i| sources[i])
     }
 }
 
@@ -128,42 +103,23 @@ mod tests {
         for text in ["#f00", "#FF0000", "#ff0000ff", "red", "Red", " red "] {
             assert_eq!(Srgba::parse(text), Some(red), "{text}");
         }
-        assert_eq!(
-            Srgba::parse("#c0392b").map(|c| c.to_string()).as_deref(),
-            Some("#c0392b")
-        );
-        assert_eq!(
-            Srgba::parse("#c0392b80").map(|c| c.to_string()).as_deref(),
-            Some("#c0392b80")
-        );
+        assert_eq!(Srgba::parse("#c0392b").map(|c| c.to_string()).as_deref(), Some("#c0392b"));
+        assert_eq!(Srgba::parse("#c0392b80").map(|c| c.to_string()).as_deref(), Some("#c0392b80"));
         assert_eq!(Srgba::parse("transparent").map(|c| c.rgba[3]), Some(0.0));
     }
 
     #[test]
     fn the_wider_css_syntax_is_refused() {
-        for text in [
-            "",
-            "#",
-            "#12",
-            "#12345",
-            "abc",
-            "123456",
-            "fade",
-            "rgb(1,2,3)",
-            "hsl(0,0%,0%)",
-            "redd",
-            "#\u{e9}00",
-        ] {
+        for text in
+            ["", "#", "#12", "#12345", "abc", "123456", "fade", "rgb(1,2,3)", "hsl(0,0%,0%)", "redd", "#\u{e9}00"]
+        {
             assert_eq!(Srgba::parse(text), None, "{text}");
         }
     }
 
     #[test]
     fn linear_light_has_known_values() {
-        let [black, grey, white, alpha] = Srgba {
-            rgba: [0.0, 0.5, 1.0, 0.25],
-        }
-        .to_linear();
+        let [black, grey, white, alpha] = Srgba { rgba: [0.0, 0.5, 1.0, 0.25] }.to_linear();
         assert_eq!((black, white, alpha), (0.0, 1.0, 0.25));
         assert!((grey - 0.214_041_14).abs() < 1e-6);
     }
@@ -171,10 +127,7 @@ mod tests {
     #[test]
     fn every_source_of_colour_has_its_name() {
         for name in BaseColor::NAMES {
-            assert_eq!(
-                BaseColor::from_name(name).map(|c| c.to_string()).as_deref(),
-                Some(name)
-            );
+            assert_eq!(BaseColor::from_name(name).map(|c| c.to_string()).as_deref(), Some(name));
         }
     }
 }

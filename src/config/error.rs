@@ -34,14 +34,7 @@ pub struct Place {
 impl Place {
     /// The file as a whole.
     pub fn of_file(file: &str) -> Self {
-        Self {
-            file: file.into(),
-            line: 0,
-            column: 0,
-            start: 0,
-            end: 0,
-            path: String::new(),
-        }
+        Self { file: file.into(), line: 0, column: 0, start: 0, end: 0, path: String::new() }
     }
 }
 
@@ -51,11 +44,7 @@ impl fmt::Display for Place {
         if self.line > 0 {
             write!(f, ":{}:{}", self.line, self.column)?;
         }
-        if self.path.is_empty() {
-            Ok(())
-        } else {
-            write!(f, " ({})", self.path)
-        }
+        if self.path.is_empty() { Ok(()) } else { write!(f, " ({})", self.path) }
     }
 }
 
@@ -158,9 +147,7 @@ pub enum Problem {
         hint: Hint,
     },
     /// A shader entry with nothing to refer to it by.
-    #[error(
-        "this shader entry has neither \"name\" nor \"shader\", so nothing can use it: name it or remove it"
-    )]
+    #[error("this shader entry has neither \"name\" nor \"shader\", so nothing can use it: name it or remove it")]
     NamelessShader,
     /// Two entries of `shaders` with one name.
     #[error("a shader called {} is already at {line}:{column}", quote(.name))]
@@ -237,10 +224,7 @@ pub struct Mistakes {
 impl Mistakes {
     /// One mistake alone.
     pub fn one(place: Place, problem: Problem) -> Self {
-        Self {
-            list: vec![Mistake { place, problem }],
-            ..Self::default()
-        }
+        Self { list: vec![Mistake { place, problem }], ..Self::default() }
     }
 
     /// Whether nothing is wrong.
@@ -248,15 +232,17 @@ impl Mistakes {
         self.list.is_empty()
     }
 
+    /// Whether further mistakes are only counted, so that nobody needs to look for their nearest names.
+    pub(super) fn is_full(&self) -> bool {
+        self.list.len() >= MOST_LISTED
+    }
+
     /// Adds one; the place is asked for only if the mistake is listed.
     pub(super) fn push(&mut self, place: impl FnOnce() -> Place, problem: Problem) {
-        if self.list.len() < MOST_LISTED {
-            self.list.push(Mistake {
-                place: place(),
-                problem,
-            });
-        } else {
+        if self.is_full() {
             self.unlisted += 1;
+        } else {
+            self.list.push(Mistake { place: place(), problem });
         }
     }
 }

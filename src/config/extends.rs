@@ -36,10 +36,7 @@ impl Loader for Files {
         let Some(path) = &from.path else {
             return Err("only a style that is a file can extend another file".to_owned());
         };
-        let beside = |path: &Path| {
-            path.parent()
-                .map_or_else(|| PathBuf::from(name), |folder| folder.join(name))
-        };
+        let beside = |path: &Path| path.parent().map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
         let mut source = read_file(&beside(path))?;
         source.name = beside(Path::new(&from.name)).display().to_string();
         Ok(source)
@@ -59,17 +56,11 @@ pub fn read_file(path: &Path) -> Result<Source, String> {
         return Err("this is a folder, not a style file".to_owned());
     }
     let mut text = Vec::new();
-    // One byte more than is allowed is enough to know that it is too much.
+    // A byte-order mark and one byte more than is allowed are enough to know that it is too much.
     let file = std::fs::File::open(path).map_err(reason)?;
-    file.take(MAX_BYTES as u64 + 4)
-        .read_to_end(&mut text)
-        .map_err(reason)?;
+    file.take(MAX_BYTES as u64 + 4).read_to_end(&mut text).map_err(reason)?;
     let canonical = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    Ok(Source {
-        name: path.display().to_string(),
-        text,
-        path: Some(canonical),
-    })
+    Ok(Source { name: path.display().to_string(), text, path: Some(canonical) })
 }
 
 /// A style with its bases in one tree.
@@ -81,18 +72,11 @@ pub(super) struct Merged {
 }
 
 /// Parses a style and its bases into `texts` and merges them.
-pub(super) fn merge_all(
-    source: &Source,
-    loader: &dyn Loader,
-    texts: &mut Texts,
-) -> Result<Merged, Mistakes> {
+pub(super) fn merge_all(source: &Source, loader: &dyn Loader, texts: &mut Texts) -> Result<Merged, Mistakes> {
     let mut mistakes = Mistakes::default();
     let mut chain = vec![source.clone()];
     let complete = read_chain(&mut chain, loader, texts, &mut mistakes);
-    let files: Vec<PathBuf> = chain
-        .iter()
-        .filter_map(|source| source.path.clone())
-        .collect();
+    let files: Vec<PathBuf> = chain.iter().filter_map(|source| source.path.clone()).collect();
     // Without its base, half a style would be full of names that nothing explains.
     if !complete {
         mistakes.files = files;
@@ -101,20 +85,11 @@ pub(super) fn merge_all(
     let mut roots = texts.0.iter().rev().map(|text| &text.root);
     let first = roots.next().cloned().expect("the style itself was parsed");
     let root = roots.fold(first, merge);
-    Ok(Merged {
-        root,
-        mistakes,
-        files,
-    })
+    Ok(Merged { root, mistakes, files })
 }
 
 /// Parses the last source of the chain, then its base, and so on; false if one of them cannot be used.
-fn read_chain(
-    chain: &mut Vec<Source>,
-    loader: &dyn Loader,
-    texts: &mut Texts,
-    mistakes: &mut Mistakes,
-) -> bool {
+fn read_chain(chain: &mut Vec<Source>, loader: &dyn Loader, texts: &mut Texts, mistakes: &mut Mistakes) -> bool {
     loop {
         let index = chain.len() - 1;
         match syntax::parse(&chain[index], index as u32, mistakes) {
@@ -146,10 +121,7 @@ fn read_chain(
         match find_base(name, chain, loader) {
             Ok(base) => chain.push(base),
             Err(reason) => {
-                let problem = Problem::Extends {
-                    base: name.to_owned(),
-                    reason,
-                };
+                let problem = Problem::Extends { base: name.to_owned(), reason };
                 mistakes.push(|| text.place(node.span), problem);
                 return false;
             }
@@ -163,15 +135,8 @@ fn find_base(name: &str, chain: &[Source], loader: &dyn Loader) -> Result<Source
     }
     let base = loader.load(name, &chain[chain.len() - 1])?;
     if chain.iter().any(|source| source.is_same_file(&base)) {
-        let names: Vec<&str> = chain
-            .iter()
-            .chain([&base])
-            .map(|source| source.name.as_str())
-            .collect();
-        return Err(format!(
-            "these styles extend one another in a circle: {}",
-            names.join(" > ")
-        ));
+        let names: Vec<&str> = chain.iter().chain([&base]).map(|source| source.name.as_str()).collect();
+        return Err(format!("these styles extend one another in a circle: {}", names.join(" > ")));
     }
     Ok(base)
 }
@@ -189,17 +154,9 @@ fn union(base: &Node, own: &Node) -> Node {
     let (Some(base), Some(own_members)) = (members(base), members(own)) else {
         return own.clone();
     };
-    let keys: HashSet<&str> = own_members
-        .iter()
-        .map(|member| member.key.as_str())
-        .collect();
-    let kept = base
-        .iter()
-        .filter(|member| !keys.contains(member.key.as_str()));
-    Node {
-        value: Tree::Object(kept.chain(own_members).cloned().collect()),
-        span: own.span,
-    }
+    let keys: HashSet<&str> = own_members.iter().map(|member| member.key.as_str()).collect();
+    let kept = base.iter().filter(|member| !keys.contains(member.key.as_str()));
+    Node { value: Tree::Object(kept.chain(own_members).cloned().collect()), span: own.span }
 }
 
 /// A whole style over its base.
@@ -228,24 +185,17 @@ fn merge_shaders(base: &Node, own: &Node) -> Node {
     };
     let mut entries = base_entries.clone();
     let named = entries.iter().enumerate().rev();
-    let mut of_name: HashMap<String, usize> = named
-        .filter_map(|(i, entry)| Some((entry.get("name")?.text()?.to_owned(), i)))
-        .collect();
+    let mut of_name: HashMap<String, usize> =
+        named.filter_map(|(i, entry)| Some((entry.get("name")?.text()?.to_owned(), i))).collect();
     for entry in own_entries {
         // Taken out, so that a second namesake stays an entry of its own, which is a mistake that is found later.
-        let namesake = entry
-            .get("name")
-            .and_then(Node::text)
-            .and_then(|name| of_name.remove(name));
+        let namesake = entry.get("name").and_then(Node::text).and_then(|name| of_name.remove(name));
         match namesake {
             Some(i) => entries[i] = merge_entry(&entries[i], entry),
             None => entries.push(entry.clone()),
         }
     }
-    Node {
-        value: Tree::List(entries),
-        span: own.span,
-    }
+    Node { value: Tree::List(entries), span: own.span }
 }
 
 fn merge_entry(base: &Node, own: &Node) -> Node {
@@ -254,15 +204,10 @@ fn merge_entry(base: &Node, own: &Node) -> Node {
         return own.clone();
     }
     let mut merged = union(base, own);
-    if let (Tree::Object(members), Some(base), Some(own)) = (
-        &mut merged.value,
-        base.get("properties"),
-        own.get("properties"),
-    ) {
-        for member in members
-            .iter_mut()
-            .filter(|member| member.key == "properties")
-        {
+    if let (Tree::Object(members), Some(base), Some(own)) =
+        (&mut merged.value, base.get("properties"), own.get("properties"))
+    {
+        for member in members.iter_mut().filter(|member| member.key == "properties") {
             member.value = union(base, own);
         }
     }
@@ -271,8 +216,5 @@ fn merge_entry(base: &Node, own: &Node) -> Node {
 
 /// A file that cannot be read, as mistakes.
 pub(super) fn unreadable(path: &Path, reason: String) -> Mistakes {
-    Mistakes::one(
-        Place::of_file(&path.display().to_string()),
-        Problem::Unreadable(reason),
-    )
+    Mistakes::one(Place::of_file(&path.display().to_string()), Problem::Unreadable(reason))
 }

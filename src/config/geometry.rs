@@ -8,9 +8,7 @@ use super::values::Values;
 pub const PARAMS: &[Param] = &[
     Param::choice_or_length("atom", &["vdw", "covalent"], "vdw")
         .doc("Radius of atoms: of the element, or one for all."),
-    Param::number("scale", 0.25)
-        .range(0.001, 100.0)
-        .doc("Atoms are drawn this many times their radius."),
+    Param::number("scale", 0.25).range(0.001, 100.0).doc("Atoms are drawn this many times their radius."),
     Param::length("bond_radius", "0.14A").doc("Radius of connectors."),
     Param::boolean("bond_orders", false).doc("Draws double and triple bonds as such."),
     Param::choice("file_unit", FILE_UNITS, "mm").doc("What a unit of length in mesh files is."),

@@ -10,10 +10,7 @@ pub(super) struct Glob {
 
 impl Glob {
     pub(super) fn new(pattern: &str) -> Self {
-        Self {
-            pattern: pattern.to_owned(),
-            is_plain: !pattern.contains(['*', '?']),
-        }
+        Self { pattern: pattern.to_owned(), is_plain: !pattern.contains(['*', '?']) }
     }
 
     pub(super) fn pattern(&self) -> &str {
@@ -25,10 +22,7 @@ impl Glob {
         match (self.is_plain, ignore_case) {
             (true, true) => self.pattern.eq_ignore_ascii_case(text),
             (true, false) => self.pattern == text,
-            (false, true) => glob_matches(
-                &self.pattern.to_ascii_lowercase(),
-                &text.to_ascii_lowercase(),
-            ),
+            (false, true) => glob_matches(&self.pattern.to_ascii_lowercase(), &text.to_ascii_lowercase()),
             (false, false) => glob_matches(&self.pattern, text),
         }
     }

@@ -19,10 +19,7 @@ pub struct Hint {
 
 impl Hint {
     /// Nothing to add.
-    pub const NONE: Self = Self {
-        nearest: None,
-        allowed: Vec::new(),
-    };
+    pub const NONE: Self = Self { nearest: None, allowed: Vec::new() };
 
     /// The word of `allowed` that is nearest to `word`, and all of them.
     pub fn new<'a>(word: &str, allowed: impl IntoIterator<Item = &'a str>) -> Self {
@@ -37,26 +34,17 @@ impl Hint {
     ) -> Self {
         let allowed: Vec<&str> = allowed.into_iter().collect();
         let nearest = nearest(word, allowed.iter().copied().chain(also));
-        Self {
-            nearest,
-            allowed: allowed.into_iter().map(str::to_owned).collect(),
-        }
+        Self { nearest, allowed: allowed.into_iter().map(str::to_owned).collect() }
     }
 
     /// All of `allowed`, with no word to compare.
     pub fn list<'a>(allowed: impl IntoIterator<Item = &'a str>) -> Self {
-        Self {
-            nearest: None,
-            allowed: allowed.into_iter().map(str::to_owned).collect(),
-        }
+        Self { nearest: None, allowed: allowed.into_iter().map(str::to_owned).collect() }
     }
 
     /// The nearest word of a set that is too large to list.
     pub fn nearest_of<'a>(word: &str, words: impl IntoIterator<Item = &'a str>) -> Self {
-        Self {
-            nearest: nearest(word, words),
-            allowed: Vec::new(),
-        }
+        Self { nearest: nearest(word, words), allowed: Vec::new() }
     }
 }
 
@@ -93,11 +81,7 @@ pub fn nearest<'a>(word: &str, words: impl IntoIterator<Item = &'a str>) -> Opti
         .filter_map(|other| {
             let other_lower = other.to_lowercase();
             let distance = strsim::damerau_levenshtein(&lower, &other_lower);
-            let rank = if distance <= most {
-                distance
-            } else {
-                LONGEST_COMPARED + distance
-            };
+            let rank = if distance <= most { distance } else { LONGEST_COMPARED + distance };
             (distance <= most || begins(&other_lower)).then_some((rank, other))
         })
         .min_by_key(|(rank, _)| *rank)
@@ -144,18 +128,9 @@ mod tests {
 
     #[test]
     fn hints_read_as_sentences() {
-        assert_eq!(
-            Hint::new("stepz", ["steps", "bias"]).to_string(),
-            "; did you mean \"steps\"? allowed: steps, bias"
-        );
-        assert_eq!(
-            Hint::new("zzz", ["steps", "bias"]).to_string(),
-            "; allowed: steps, bias"
-        );
-        assert_eq!(
-            Hint::nearest_of("stepz", ["steps"]).to_string(),
-            "; did you mean \"steps\"?"
-        );
+        assert_eq!(Hint::new("stepz", ["steps", "bias"]).to_string(), "; did you mean \"steps\"? allowed: steps, bias");
+        assert_eq!(Hint::new("zzz", ["steps", "bias"]).to_string(), "; allowed: steps, bias");
+        assert_eq!(Hint::nearest_of("stepz", ["steps"]).to_string(), "; did you mean \"steps\"?");
         assert_eq!(Hint::NONE.to_string(), "");
     }
 

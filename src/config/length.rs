@@ -22,11 +22,7 @@ impl Length {
     /// The number without its unit.
     pub fn number(self) -> f64 {
         match self {
-            Self::Radii(n)
-            | Self::Points(n)
-            | Self::MedianRadii(n)
-            | Self::Angstrom(n)
-            | Self::Millimetre(n) => n,
+            Self::Radii(n) | Self::Points(n) | Self::MedianRadii(n) | Self::Angstrom(n) | Self::Millimetre(n) => n,
         }
     }
 
@@ -56,9 +52,7 @@ impl FromStr for Length {
         let text = text.trim();
         let end = text
             .char_indices()
-            .find(|(at, c)| {
-                !(c.is_ascii_digit() || *c == '.' || (*at == 0 && matches!(c, '-' | '+')))
-            })
+            .find(|(at, c)| !(c.is_ascii_digit() || *c == '.' || (*at == 0 && matches!(c, '-' | '+'))))
             .map_or(text.len(), |(at, _)| at);
         let (digits, unit) = text.split_at(end);
         let number: f64 = digits.parse().map_err(|_| BadLength)?;
@@ -101,20 +95,7 @@ mod tests {
 
     #[test]
     fn anything_else_is_refused() {
-        for text in [
-            "",
-            "2",
-            "pt",
-            "2px",
-            "2 p t",
-            "1e3pt",
-            "..pt",
-            "1-2pt",
-            "nanpt",
-            "infmm",
-            "2PT",
-            "\u{661}pt",
-        ] {
+        for text in ["", "2", "pt", "2px", "2 p t", "1e3pt", "..pt", "1-2pt", "nanpt", "infmm", "2PT", "\u{661}pt"] {
             assert_eq!(text.parse::<Length>(), Err(BadLength), "{text}");
         }
     }

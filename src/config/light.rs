@@ -18,7 +18,10 @@ pub const PARAMS: &[Param] = &[
     Param::number("intensity", 1.0).range(0.0, 1000.0).doc("Factor on the colour."),
     Param::choice("shadow", &["none", "hard", "soft"], "none").doc("What shadow it casts."),
     Param::number("strength", 0.6).range(0.0, 1.0).doc("Darkness of the shadow; 1 is black."),
-    Param::number("softness", 3.0).range(0.0, 90.0).unit("degrees").doc("Angular diameter of the light, for soft shadows."),
+    Param::number("softness", 3.0)
+        .range(0.0, 90.0)
+        .unit("degrees")
+        .doc("Angular diameter of the light, for soft shadows."),
     Param::boolean("movable", false).doc("Whether it can be dragged in a window."),
     Param::choice("space", &["camera", "scene"], "camera").doc("Whether it turns with the camera or with the scene."),
     Param::optional_length("range").doc("Where a point light has faded to nothing; unset: it does not fade."),
@@ -104,11 +107,7 @@ impl Light {
     /// The lights of a style that has no `lights`: one key light and ambient.
     pub fn default_lights() -> Vec<Self> {
         let key = Self::new(&Values::defaults(PARAMS));
-        let ambient = Self {
-            kind: LightKind::Ambient,
-            intensity: AMBIENT_INTENSITY,
-            ..key.clone()
-        };
+        let ambient = Self { kind: LightKind::Ambient, intensity: AMBIENT_INTENSITY, ..key.clone() };
         vec![key, ambient]
     }
 

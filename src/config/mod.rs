@@ -8,6 +8,7 @@
 //!
 //! Nothing here knows of a GPU, a scene or a shader.
 
+mod blank;
 pub mod camera;
 pub mod catalog;
 pub mod color;
@@ -53,11 +54,7 @@ pub fn load(source: &Source, catalog: &Catalog<'_>) -> Result<Style, Mistakes> {
 }
 
 /// Loads a style; `loader` finds the base that it extends.
-pub fn load_with(
-    source: &Source,
-    catalog: &Catalog<'_>,
-    loader: &dyn Loader,
-) -> Result<Style, Mistakes> {
+pub fn load_with(source: &Source, catalog: &Catalog<'_>, loader: &dyn Loader) -> Result<Style, Mistakes> {
     let mut texts = source::Texts::default();
     let merged = extends::merge_all(source, loader, &mut texts)?;
     style::resolve(&texts, merged, catalog)

@@ -118,15 +118,7 @@ pub struct Param {
 
 impl Param {
     const fn new(name: &'static str, kind: Kind, default: Default) -> Self {
-        Self {
-            name,
-            kind,
-            default,
-            range: None,
-            unit: "",
-            doc: "",
-            drawn: true,
-        }
+        Self { name, kind, default, range: None, unit: "", doc: "", drawn: true }
     }
 
     /// A number.
@@ -155,21 +147,13 @@ impl Param {
     }
 
     /// One of some words, or a length. The default is a word.
-    pub const fn choice_or_length(
-        name: &'static str,
-        of: &'static [&'static str],
-        default: &'static str,
-    ) -> Self {
+    pub const fn choice_or_length(name: &'static str, of: &'static [&'static str], default: &'static str) -> Self {
         Self::new(name, Kind::ChoiceOrLength(of), Default::Text(default)).at_least(0.0)
     }
 
     /// A colour, opaque by default.
     pub const fn color(name: &'static str, default: [u8; 3]) -> Self {
-        Self::new(
-            name,
-            Kind::Color,
-            Default::Color(Srgba::from_bytes(default)),
-        )
+        Self::new(name, Kind::Color, Default::Color(Srgba::from_bytes(default)))
     }
 
     /// A colour that may be unset.
@@ -183,11 +167,7 @@ impl Param {
     }
 
     /// One of some words.
-    pub const fn choice(
-        name: &'static str,
-        of: &'static [&'static str],
-        default: &'static str,
-    ) -> Self {
+    pub const fn choice(name: &'static str, of: &'static [&'static str], default: &'static str) -> Self {
         Self::new(name, Kind::Choice(of), Default::Text(default))
     }
 
@@ -262,29 +242,19 @@ impl Param {
 
     /// The default as a value, or what is wrong with the declaration.
     pub fn default_value(&self) -> Result<Value, String> {
-        let bad = || {
-            Err(format!(
-                "{:?}: the default {:?} does not fit {:?}",
-                self.name, self.default, self.kind
-            ))
-        };
+        let bad = || Err(format!("{:?}: the default {:?} does not fit {:?}", self.name, self.default, self.kind));
         match (self.kind, self.default) {
             (Kind::Length | Kind::Color | Kind::Vector, Default::Unset) => Ok(Value::Unset),
             (Kind::Number, Default::Number(n)) => Ok(Value::Number(n)),
             (Kind::Count, Default::Count(n)) => Ok(Value::Count(n)),
             (Kind::Length, Default::Radii(n)) => Ok(Value::Length(Length::Radii(n))),
-            (Kind::Length, Default::Text(text)) => {
-                text.parse().map(Value::Length).or_else(|_| bad())
+            (Kind::Length, Default::Text(text)) => text.parse().map(Value::Length).or_else(|_| bad()),
+            (Kind::Choice(of) | Kind::ChoiceOrLength(of), Default::Text(text)) => {
+                of.iter().position(|choice| *choice == text).map_or_else(bad, |i| Ok(Value::Choice(i)))
             }
-            (Kind::Choice(of) | Kind::ChoiceOrLength(of), Default::Text(text)) => of
-                .iter()
-                .position(|choice| *choice == text)
-                .map_or_else(bad, |i| Ok(Value::Choice(i))),
             (Kind::Color, Default::Color(color)) => Ok(Value::Color(color)),
             (Kind::BaseColor, Default::BaseColor(color)) => Ok(Value::BaseColor(color)),
-            (Kind::Boolean | Kind::BooleanOrText, Default::Boolean(value)) => {
-                Ok(Value::Boolean(value))
-            }
+            (Kind::Boolean | Kind::BooleanOrText, Default::Boolean(value)) => Ok(Value::Boolean(value)),
             (Kind::Numbers { len }, Default::Numbers(list)) if len == 0 || list.len() == len => {
                 Ok(Value::Numbers(list.to_vec()))
             }
@@ -320,11 +290,7 @@ impl Param {
             }
             _ => format!("lie in -{LARGEST} to {LARGEST}"),
         };
-        if self.unit.is_empty() {
-            bounds
-        } else {
-            format!("{bounds} {}", self.unit)
-        }
+        if self.unit.is_empty() { bounds } else { format!("{bounds} {}", self.unit) }
     }
 }
 
@@ -336,19 +302,13 @@ pub fn check_table(params: &[Param]) -> Vec<String> {
         if params[..i].iter().any(|earlier| earlier.name == name) {
             wrong.push(format!("{name:?} is declared twice"));
         }
-        if name.is_empty()
-            || !name
-                .bytes()
-                .all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_')
-        {
+        if name.is_empty() || !name.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_') {
             wrong.push(format!("{name:?} is not in lower case with underscores"));
         }
         if param.doc.is_empty() {
             wrong.push(format!("{name:?} has no doc"));
         }
-        if param.range.is_some_and(|(lowest, highest)| {
-            lowest.is_nan() || highest.is_nan() || lowest > highest
-        }) {
+        if param.range.is_some_and(|(lowest, highest)| lowest.is_nan() || highest.is_nan() || lowest > highest) {
             wrong.push(format!("{name:?}: the range is empty"));
         }
         let numbers = match param.default_value() {
@@ -367,13 +327,7 @@ pub fn check_table(params: &[Param]) -> Vec<String> {
             }
             Ok(Value::Numbers(list)) => list,
             Ok(Value::Vector(vector)) => vector.to_vec(),
-            Ok(
-                Value::Unset
-                | Value::Color(_)
-                | Value::BaseColor(_)
-                | Value::Choice(_)
-                | Value::Boolean(_),
-            ) => continue,
+            Ok(Value::Unset | Value::Color(_) | Value::BaseColor(_) | Value::Choice(_) | Value::Boolean(_)) => continue,
         };
         if numbers.iter().any(|n| !param.allows(*n)) {
             wrong.push(format!("{name:?}: the default is outside the range"));
@@ -412,20 +366,8 @@ mod tests {
 
     #[test]
     fn ranges_read_as_sentences() {
-        assert_eq!(
-            Param::number("fov", 35.0)
-                .range(1.0, 179.0)
-                .unit("degrees")
-                .allowed(),
-            "lie in 1 to 179 degrees"
-        );
-        assert_eq!(
-            Param::number("zoom", 1.0).at_least(0.1).allowed(),
-            "be at least 0.1 (and at most 1000000000)"
-        );
-        assert_eq!(
-            Param::number("x", 1.0).allowed(),
-            "lie in -1000000000 to 1000000000"
-        );
+        assert_eq!(Param::number("fov", 35.0).range(1.0, 179.0).unit("degrees").allowed(), "lie in 1 to 179 degrees");
+        assert_eq!(Param::number("zoom", 1.0).at_least(0.1).allowed(), "be at least 0.1 (and at most 1000000000)");
+        assert_eq!(Param::number("x", 1.0).allowed(), "lie in -1000000000 to 1000000000");
     }
 }

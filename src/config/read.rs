@@ -1,6 +1,6 @@
 //! Reading parsed values as a parameter table asks, and collecting what is wrong with them.
 
-use super::color::{BaseColor, Srgba};
+use super::color::{BaseColor, Srgba, css_names};
 use super::error::{Mistakes, Notice, Place, Problem, Warning};
 use super::hint::{Hint, quote};
 use super::length::Length;
@@ -66,20 +66,12 @@ impl Reader<'_> {
 
     /// The values of a table: what the members give, and defaults for the rest. Unknown keys are mistakes, said of
     /// `owner`, such as `camera`.
-    pub(super) fn table(
-        &mut self,
-        owner: &str,
-        members: &[Member],
-        params: &'static [Param],
-    ) -> Values {
+    pub(super) fn table(&mut self, owner: &str, members: &[Member], params: &'static [Param]) -> Values {
         let mut values = Values::defaults(params);
         for member in members {
             let Some(index) = params.iter().position(|param| param.name == member.key) else {
-                let hint = Hint::new(
-                    &member.key,
-                    params.iter().filter(|p| p.drawn).map(|param| param.name),
-                );
-                self.unknown_key(owner, member, hint);
+                let names = params.iter().filter(|param| param.drawn).map(|param| param.name);
+                self.unknown_key(owner, member, names);
                 continue;
             };
             self.set(&mut values, index, &member.value);
@@ -90,42 +82,40 @@ impl Reader<'_> {
     /// Reads one parameter of a table.
     pub(super) fn set(&mut self, values: &mut Values, index: usize, node: &Node) {
         let param = &values.params()[index];
-        match read(param, node) {
+        match read(param, node, !self.mistakes.is_full()) {
             Ok(value) => values.set(index, value, self.texts.place(node.span)),
             Err((span, problem)) => self.wrong(span, problem),
         }
         if !param.drawn {
-            self.warn(
-                self.texts.place(node.span),
-                Notice::PropertyNotDrawn {
-                    name: param.name.to_owned(),
-                },
-            );
+            self.warn(self.texts.place(node.span), Notice::PropertyNotDrawn { name: param.name.to_owned() });
         }
     }
 
-    /// Notes a key that nothing knows.
-    pub(super) fn unknown_key(&mut self, owner: &str, member: &Member, hint: Hint) {
-        let problem = Problem::UnknownKey {
-            owner: owner.to_owned(),
-            key: member.key.clone(),
-            hint,
-        };
-        self.wrong(member.key_span, problem);
+    /// Notes a key that nothing knows; `allowed` are the keys that something does.
+    pub(super) fn unknown_key(
+        &mut self,
+        owner: &str,
+        member: &Member,
+        allowed: impl IntoIterator<Item = &'static str>,
+    ) {
+        let key = member.key.clone();
+        let hint = self.hint(|| Hint::new(&key, allowed));
+        self.wrong(member.key_span, Problem::UnknownKey { owner: owner.to_owned(), key, hint });
+    }
+
+    /// A hint, unless the mistake will only be counted.
+    pub(super) fn hint(&self, hint: impl FnOnce() -> Hint) -> Hint {
+        if self.mistakes.is_full() { Hint::NONE } else { hint() }
     }
 }
 
 /// A value of another type than is due.
 pub(super) fn wrong_type(name: &str, expected: &str, node: &Node) -> Problem {
-    Problem::WrongType {
-        name: name.to_owned(),
-        expected: expected.to_owned(),
-        found: node.describe(),
-    }
+    Problem::WrongType { name: name.to_owned(), expected: expected.to_owned(), found: node.describe() }
 }
 
-/// Reads one value as its parameter asks.
-fn read(param: &Param, node: &Node) -> Result<Value, Wrong> {
+/// Reads one value as its parameter asks. With hints, the names of colours are searched for one that is near.
+fn read(param: &Param, node: &Node, with_hints: bool) -> Result<Value, Wrong> {
     if node.value == Tree::Null && param.default == super::param::Default::Unset {
         return Ok(Value::Unset);
     }
@@ -134,11 +124,12 @@ fn read(param: &Param, node: &Node) -> Result<Value, Wrong> {
         Kind::Count => count(param, node).map(Value::Count),
         Kind::Length => length(param, node).map(Value::Length),
         Kind::ChoiceOrLength(of) => choice_or_length(param, of, node),
-        Kind::Color => color(param, &[], node).map(Value::Color),
+        Kind::Color => color(param, &[], node, with_hints).map(Value::Color),
         Kind::BaseColor => match node.text().and_then(BaseColor::from_name) {
             Some(source) => Ok(Value::BaseColor(source)),
-            None => color(param, &BaseColor::NAMES, node)
-                .map(|color| Value::BaseColor(BaseColor::Color(color))),
+            None => {
+                color(param, &BaseColor::NAMES, node, with_hints).map(|color| Value::BaseColor(BaseColor::Color(color)))
+            }
         },
         Kind::Choice(of) => choice(param, of, node).map(Value::Choice),
         Kind::Boolean | Kind::BooleanOrText => boolean(param, node).map(Value::Boolean),
@@ -148,11 +139,7 @@ fn read(param: &Param, node: &Node) -> Result<Value, Wrong> {
 }
 
 fn out_of_range(param: &Param, value: f64, allowed: String) -> Problem {
-    Problem::OutOfRange {
-        name: param.name.to_owned(),
-        value,
-        allowed,
-    }
+    Problem::OutOfRange { name: param.name.to_owned(), value, allowed }
 }
 
 fn number(param: &Param, node: &Node, expected: &str) -> Result<f64, Wrong> {
@@ -166,9 +153,7 @@ fn number(param: &Param, node: &Node, expected: &str) -> Result<f64, Wrong> {
 fn count(param: &Param, node: &Node) -> Result<u32, Wrong> {
     const EXPECTED: &str = "a whole number, 0 or more";
     match node.value {
-        Tree::Number(n) if n.fract() != 0.0 || n < 0.0 => {
-            Err((node.span, wrong_type(param.name, EXPECTED, node)))
-        }
+        Tree::Number(n) if n.fract() != 0.0 || n < 0.0 => Err((node.span, wrong_type(param.name, EXPECTED, node))),
         // Allowed numbers are at most `LARGEST`, which u32 holds.
         _ => number(param, node, EXPECTED).map(|n| n as u32),
     }
@@ -176,14 +161,10 @@ fn count(param: &Param, node: &Node) -> Result<u32, Wrong> {
 
 fn length(param: &Param, node: &Node) -> Result<Length, Wrong> {
     let Some(text) = node.text() else {
-        let expected =
-            "a number (radii of the scene) or a text such as \"2pt\", \"3r\", \"1.5A\" or \"2mm\"";
+        let expected = "a number (radii of the scene) or a text such as \"2pt\", \"3r\", \"1.5A\" or \"2mm\"";
         return number(param, node, expected).map(Length::Radii);
     };
-    let bad = || Problem::BadLength {
-        name: param.name.to_owned(),
-        value: text.to_owned(),
-    };
+    let bad = || Problem::BadLength { name: param.name.to_owned(), value: text.to_owned() };
     let length: Length = text.parse().map_err(|_| (node.span, bad()))?;
     let (lowest, highest) = param.length_bounds(length);
     if (lowest..=highest).contains(&length.number()) {
@@ -193,14 +174,8 @@ fn length(param: &Param, node: &Node) -> Result<Length, Wrong> {
     Err((node.span, out_of_range(param, length.number(), allowed)))
 }
 
-fn choice_or_length(
-    param: &Param,
-    of: &'static [&'static str],
-    node: &Node,
-) -> Result<Value, Wrong> {
-    let word = node
-        .text()
-        .filter(|text| !text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | '-')));
+fn choice_or_length(param: &Param, of: &'static [&'static str], node: &Node) -> Result<Value, Wrong> {
+    let word = node.text().filter(|text| !text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | '-')));
     match word {
         Some(text) => choice(param, of, node).map(Value::Choice).map_err(|_| {
             let mut hint = Hint::new(text, of.iter().copied());
@@ -213,13 +188,7 @@ fn choice_or_length(
 
 fn choice(param: &Param, of: &'static [&'static str], node: &Node) -> Result<usize, Wrong> {
     let Some(text) = node.text() else {
-        let expected = format!(
-            "one of the texts {}",
-            of.iter()
-                .map(|word| quote(word))
-                .collect::<Vec<_>>()
-                .join(", ")
-        );
+        let expected = format!("one of the texts {}", of.iter().map(|word| quote(word)).collect::<Vec<_>>().join(", "));
         return Err((node.span, wrong_type(param.name, &expected, node)));
     };
     of.iter().position(|word| *word == text).ok_or_else(|| {
@@ -229,11 +198,7 @@ fn choice(param: &Param, of: &'static [&'static str], node: &Node) -> Result<usi
 }
 
 fn not_a_choice(param: &Param, text: &str, hint: Hint) -> Problem {
-    Problem::NotAChoice {
-        name: param.name.to_owned(),
-        value: text.to_owned(),
-        hint,
-    }
+    Problem::NotAChoice { name: param.name.to_owned(), value: text.to_owned(), hint }
 }
 
 fn boolean(param: &Param, node: &Node) -> Result<bool, Wrong> {
@@ -247,34 +212,22 @@ fn boolean(param: &Param, node: &Node) -> Result<bool, Wrong> {
 }
 
 /// The components of a colour are bytes as in [Prost2016, Listing 1].
-fn color(param: &Param, other_words: &[&'static str], node: &Node) -> Result<Srgba, Wrong> {
-    let bad = |hint| Problem::BadColor {
-        name: param.name.to_owned(),
-        found: node.describe(),
-        hint,
-    };
+fn color(param: &Param, other_words: &[&'static str], node: &Node, with_hints: bool) -> Result<Srgba, Wrong> {
+    let bad = |hint| Problem::BadColor { name: param.name.to_owned(), found: node.describe(), hint };
     match &node.value {
         Tree::Text(text) => Srgba::parse(text).ok_or_else(|| {
-            let near = Hint::nearest_of(
-                text,
-                super::color::css_names().chain(other_words.iter().copied()),
-            );
+            let words = css_names().chain(other_words.iter().copied());
+            let near = if with_hints { Hint::nearest_of(text, words) } else { Hint::NONE };
             (node.span, bad(near))
         }),
         Tree::List(items) if items.len() == 3 || items.len() == 4 => {
             let mut rgba = [1.0; 4];
             for (component, item) in rgba.iter_mut().zip(items) {
                 let Tree::Number(n) = item.value else {
-                    return Err((
-                        item.span,
-                        wrong_type(param.name, "a colour of numbers in 0 to 255", item),
-                    ));
+                    return Err((item.span, wrong_type(param.name, "a colour of numbers in 0 to 255", item)));
                 };
                 if !(0.0..=255.0).contains(&n) {
-                    return Err((
-                        item.span,
-                        out_of_range(param, n, "lie in 0 to 255".to_owned()),
-                    ));
+                    return Err((item.span, out_of_range(param, n, "lie in 0 to 255".to_owned())));
                 }
                 *component = (n / 255.0) as f32;
             }
@@ -298,10 +251,9 @@ fn numbers(param: &Param, len: usize, node: &Node) -> Result<Vec<f64>, Wrong> {
         inner = only;
     }
     match &inner.value {
-        Tree::List(items) if len == 0 || items.len() == len => items
-            .iter()
-            .map(|item| number(param, item, &expected))
-            .collect(),
+        Tree::List(items) if len == 0 || items.len() == len => {
+            items.iter().map(|item| number(param, item, &expected)).collect()
+        }
         _ => Err((inner.span, wrong_type(param.name, &expected, inner))),
     }
 }

@@ -26,13 +26,7 @@ pub enum ObjectKind {
 
 impl ObjectKind {
     /// All types, in the order of the manual.
-    pub const ALL: [Self; 5] = [
-        Self::Atom,
-        Self::Connector,
-        Self::Ribbon,
-        Self::Surface,
-        Self::Mesh,
-    ];
+    pub const ALL: [Self; 5] = [Self::Atom, Self::Connector, Self::Ribbon, Self::Surface, Self::Mesh];
 
     /// The name in selectors.
     pub fn name(self) -> &'static str {
@@ -50,9 +44,7 @@ impl ObjectKind {
         use Attribute::{Chain, Element, File, Material, Model, Name, Part, Residue};
         match self {
             Self::Mesh => &[Part, Material, File],
-            Self::Atom | Self::Connector | Self::Ribbon | Self::Surface => {
-                &[Element, Name, Residue, Chain, Model]
-            }
+            Self::Atom | Self::Connector | Self::Ribbon | Self::Surface => &[Element, Name, Residue, Chain, Model],
         }
     }
 }
@@ -80,16 +72,8 @@ pub enum Attribute {
 
 impl Attribute {
     /// All attributes, in the order of the manual.
-    pub const ALL: [Self; 8] = [
-        Self::Element,
-        Self::Name,
-        Self::Residue,
-        Self::Chain,
-        Self::Model,
-        Self::Part,
-        Self::Material,
-        Self::File,
-    ];
+    pub const ALL: [Self; 8] =
+        [Self::Element, Self::Name, Self::Residue, Self::Chain, Self::Model, Self::Part, Self::Material, Self::File];
 
     /// The name in selectors.
     pub fn name(self) -> &'static str {
@@ -128,9 +112,7 @@ impl AttributeSet {
 
     /// The attributes of the set.
     pub fn iter(self) -> impl Iterator<Item = Attribute> {
-        Attribute::ALL
-            .into_iter()
-            .filter(move |attribute| self.contains(*attribute))
+        Attribute::ALL.into_iter().filter(move |attribute| self.contains(*attribute))
     }
 }
 
@@ -145,63 +127,35 @@ pub struct Selector {
 impl Selector {
     /// Parses a key of `mapping`.
     pub fn parse(text: &str) -> Result<Self, Problem> {
-        let bad = |reason: String, hint| Problem::BadSelector {
-            text: text.to_owned(),
-            reason,
-            hint,
-        };
+        let bad = |reason: String, hint| Problem::BadSelector { text: text.to_owned(), reason, hint };
         let trimmed = text.trim();
         let (kind_name, mut rest) = trimmed.split_at(trimmed.find('[').unwrap_or(trimmed.len()));
         let kind_name = kind_name.trim_end();
-        let kind = ObjectKind::ALL
-            .into_iter()
-            .find(|kind| kind.name() == kind_name);
+        let kind = ObjectKind::ALL.into_iter().find(|kind| kind.name() == kind_name);
         if kind.is_none() && kind_name != "*" {
-            let words = ObjectKind::ALL
-                .into_iter()
-                .map(ObjectKind::name)
-                .chain(["*", "post_effects"]);
+            let words = ObjectKind::ALL.into_iter().map(ObjectKind::name).chain(["*", "post_effects"]);
             let reason = format!("there is no type {}", super::hint::quote(kind_name));
             return Err(bad(reason, Hint::new(kind_name, words)));
         }
         let mut conditions = Vec::new();
         while let Some(after) = rest.strip_prefix('[') {
-            let Some((name, value)) = after
-                .split_once('=')
-                .filter(|(name, _)| !name.contains(['[', ']']))
-            else {
-                return Err(bad(
-                    "[attribute=value] is due after the type".to_owned(),
-                    Hint::NONE,
-                ));
+            let Some((name, value)) = after.split_once('=').filter(|(name, _)| !name.contains(['[', ']'])) else {
+                return Err(bad("[attribute=value] is due after the type".to_owned(), Hint::NONE));
             };
             let name = name.trim();
             let allowed: &[Attribute] = kind.map_or(&Attribute::ALL, ObjectKind::attributes);
             let Some(attribute) = allowed.iter().find(|attribute| attribute.name() == name) else {
-                let reason = format!(
-                    "{kind_name:?} has no attribute {}",
-                    super::hint::quote(name)
-                );
-                return Err(bad(
-                    reason,
-                    Hint::new(name, allowed.iter().map(|attribute| attribute.name())),
-                ));
+                let reason = format!("{kind_name:?} has no attribute {}", super::hint::quote(name));
+                return Err(bad(reason, Hint::new(name, allowed.iter().map(|attribute| attribute.name()))));
             };
             let (value, after) = read_value(value).map_err(|reason| bad(reason, Hint::NONE))?;
             conditions.push((*attribute, Glob::new(value)));
             rest = after;
         }
         if !rest.is_empty() {
-            return Err(bad(
-                format!("{} after ] is too much", super::hint::quote(rest)),
-                Hint::NONE,
-            ));
+            return Err(bad(format!("{} after ] is too much", super::hint::quote(rest)), Hint::NONE));
         }
-        Ok(Self {
-            text: text.to_owned(),
-            kind,
-            conditions,
-        })
+        Ok(Self { text: text.to_owned(), kind, conditions })
     }
 
     /// The type it is for; `None` is `*`.
@@ -212,17 +166,13 @@ impl Selector {
     /// The attributes it asks for.
     pub fn attributes(&self) -> AttributeSet {
         let mut set = AttributeSet::default();
-        self.conditions
-            .iter()
-            .for_each(|(attribute, _)| set.insert(*attribute));
+        self.conditions.iter().for_each(|(attribute, _)| set.insert(*attribute));
         set
     }
 
     /// Each attribute with the pattern that it must match.
     pub fn conditions(&self) -> impl Iterator<Item = (Attribute, &str)> {
-        self.conditions
-            .iter()
-            .map(|(attribute, glob)| (*attribute, glob.pattern()))
+        self.conditions.iter().map(|(attribute, glob)| (*attribute, glob.pattern()))
     }
 
     /// Whether it is for objects of a type at all.
@@ -232,15 +182,12 @@ impl Selector {
 
     /// Whether it picks an object, given its type and a way to ask for its attributes. An attribute that the object
     /// does not have matches nothing.
-    pub fn matches<'a>(
-        &self,
-        kind: ObjectKind,
-        attribute: &dyn Fn(Attribute) -> Option<&'a str>,
-    ) -> bool {
+    pub fn matches<'a>(&self, kind: ObjectKind, attribute: &dyn Fn(Attribute) -> Option<&'a str>) -> bool {
         self.is_for(kind)
-            && self.conditions.iter().all(|(of, glob)| {
-                attribute(*of).is_some_and(|value| glob.matches(value, *of == Attribute::Element))
-            })
+            && self
+                .conditions
+                .iter()
+                .all(|(of, glob)| attribute(*of).is_some_and(|value| glob.matches(value, *of == Attribute::Element)))
     }
 
     /// Its rank among selectors that match the same object: more attributes win, then a type over `*`.
@@ -261,9 +208,7 @@ fn read_value(text: &str) -> Result<(&str, &str), String> {
     let text = text.trim_start();
     let close = || "] is missing".to_owned();
     if let Some(quote) = text.chars().next().filter(|c| matches!(c, '"' | '\'')) {
-        let (value, after) = text[1..]
-            .split_once(quote)
-            .ok_or("the quote is never closed")?;
+        let (value, after) = text[1..].split_once(quote).ok_or("the quote is never closed")?;
         let after = after.trim_start().strip_prefix(']').ok_or_else(close)?;
         return Ok((value, after.trim_start()));
     }
@@ -280,28 +225,15 @@ mod tests {
 
     fn picks(selector: &str, kind: ObjectKind, of: &[(Attribute, &str)]) -> bool {
         let selector = Selector::parse(selector).unwrap();
-        selector.matches(kind, &|wanted| {
-            of.iter()
-                .find(|(attribute, _)| *attribute == wanted)
-                .map(|(_, value)| *value)
-        })
+        selector.matches(kind, &|wanted| of.iter().find(|(attribute, _)| *attribute == wanted).map(|(_, value)| *value))
     }
 
     #[test]
     fn types_and_attributes_must_all_match() {
-        let water = [
-            (Attribute::Element, "O"),
-            (Attribute::Residue, "HOH"),
-            (Attribute::Name, "O"),
-        ];
-        for selector in [
-            "atom",
-            "*",
-            "atom[element=O]",
-            "atom[element=o][residue=HOH]",
-            "*[residue=H*]",
-            " atom [ name = O ] ",
-        ] {
+        let water = [(Attribute::Element, "O"), (Attribute::Residue, "HOH"), (Attribute::Name, "O")];
+        for selector in
+            ["atom", "*", "atom[element=O]", "atom[element=o][residue=HOH]", "*[residue=H*]", " atom [ name = O ] "]
+        {
             assert!(picks(selector, ObjectKind::Atom, &water), "{selector}");
         }
         for selector in [
@@ -321,16 +253,8 @@ mod tests {
         let part = [(Attribute::Part, "A[1]")];
         assert!(picks("mesh[part=\"A[1]\"]", ObjectKind::Mesh, &part));
         assert!(picks("mesh[part='A[1]']", ObjectKind::Mesh, &part));
-        assert!(picks(
-            "atom[name=C1']",
-            ObjectKind::Atom,
-            &[(Attribute::Name, "C1'")]
-        ));
-        assert!(picks(
-            "atom[chain='']",
-            ObjectKind::Atom,
-            &[(Attribute::Chain, "")]
-        ));
+        assert!(picks("atom[name=C1']", ObjectKind::Atom, &[(Attribute::Name, "C1'")]));
+        assert!(picks("atom[chain='']", ObjectKind::Atom, &[(Attribute::Chain, "")]));
     }
 
     #[test]
@@ -357,30 +281,12 @@ mod tests {
                 "atom[elemnt=O]",
                 "selector \"atom[elemnt=O]\": \"atom\" has no attribute \"elemnt\"; did you mean \"element\"? allowed: element, name, residue, chain, model",
             ),
-            (
-                "atom[element=O",
-                "selector \"atom[element=O\": ] is missing",
-            ),
-            (
-                "atom[element]",
-                "selector \"atom[element]\": [attribute=value] is due after the type",
-            ),
-            (
-                "atom[",
-                "selector \"atom[\": [attribute=value] is due after the type",
-            ),
-            (
-                "atom[name='O]",
-                "selector \"atom[name='O]\": the quote is never closed",
-            ),
-            (
-                "atom[name=]",
-                "selector \"atom[name=]\": the value is empty: write \"\" in quotes if that is meant",
-            ),
-            (
-                "atom[name=O]x",
-                "selector \"atom[name=O]x\": \"x\" after ] is too much",
-            ),
+            ("atom[element=O", "selector \"atom[element=O\": ] is missing"),
+            ("atom[element]", "selector \"atom[element]\": [attribute=value] is due after the type"),
+            ("atom[", "selector \"atom[\": [attribute=value] is due after the type"),
+            ("atom[name='O]", "selector \"atom[name='O]\": the quote is never closed"),
+            ("atom[name=]", "selector \"atom[name=]\": the value is empty: write \"\" in quotes if that is meant"),
+            ("atom[name=O]x", "selector \"atom[name=O]x\": \"x\" after ] is too much"),
         ] {
             assert_eq!(Selector::parse(text).unwrap_err().to_string(), message);
         }
@@ -388,13 +294,8 @@ mod tests {
 
     #[test]
     fn sets_hold_what_was_added() {
-        let set = Selector::parse("*[part=a][element=b]")
-            .unwrap()
-            .attributes();
-        assert_eq!(
-            set.iter().collect::<Vec<_>>(),
-            [Attribute::Element, Attribute::Part]
-        );
+        let set = Selector::parse("*[part=a][element=b]").unwrap().attributes();
+        assert_eq!(set.iter().collect::<Vec<_>>(), [Attribute::Element, Attribute::Part]);
         assert!(AttributeSet::default().is_empty());
     }
 }

@@ -19,6 +19,9 @@ const SHARED: [&str; 2] = ["base_color", "opacity"];
 /// Most names of a file that a message lists.
 const MOST_NAMES: usize = 20;
 
+/// Most names of a file that are compared with a wrong one.
+const MOST_COMPARED: usize = 1000;
+
 /// A shader or post effect with its properties: one entry of `shaders`, or a registered one with its defaults.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShaderUse {
@@ -50,12 +53,7 @@ pub(super) struct Shaders<'a> {
 
 impl<'a> Shaders<'a> {
     pub(super) fn new(catalog: Catalog<'a>) -> Self {
-        Self {
-            catalog,
-            uses: Vec::new(),
-            declared: HashMap::new(),
-            undeclared: HashMap::new(),
-        }
+        Self { catalog, uses: Vec::new(), declared: HashMap::new(), undeclared: HashMap::new() }
     }
 
     /// Reads the list `shaders`.
@@ -79,18 +77,12 @@ impl<'a> Shaders<'a> {
         let members = match &entry.value {
             Tree::Object(members) => members,
             _ => {
-                reader.wrong(
-                    entry.span,
-                    wrong_type("shaders", "a list of objects", entry),
-                );
+                reader.wrong(entry.span, wrong_type("shaders", "a list of objects", entry));
                 return None;
             }
         };
-        for member in members
-            .iter()
-            .filter(|member| !KEYS.contains(&member.key.as_str()))
-        {
-            reader.unknown_key("a shader entry", member, Hint::new(&member.key, KEYS));
+        for member in members.iter().filter(|member| !KEYS.contains(&member.key.as_str())) {
+            reader.unknown_key("a shader entry", member, KEYS);
         }
         let (name, shader) = (entry.get("name"), entry.get("shader"));
         if name.is_none() && shader.is_none() {
@@ -107,12 +99,7 @@ impl<'a> Shaders<'a> {
         let registered = match shader {
             Some(shader) => self.registered(reader, shader),
             None => {
-                missing(
-                    reader,
-                    entry,
-                    "shader",
-                    Hint::list(self.catalog.drawn_names(None)),
-                );
+                missing(reader, entry, "shader", Hint::list(self.catalog.drawn_names(None)));
                 None
             }
         };
@@ -120,8 +107,7 @@ impl<'a> Shaders<'a> {
             Some(properties) => reader.object("properties", properties),
             None => &[],
         };
-        let used =
-            registered.map(|found| self.use_of(reader, found, entry, name.as_deref(), properties));
+        let used = registered.map(|found| self.use_of(reader, found, entry, name.as_deref(), properties));
         let name = name?;
         if !self.declared.contains_key(&name) {
             let index = used.map(|used| self.push(used));
@@ -135,15 +121,8 @@ impl<'a> Shaders<'a> {
         let found = self.catalog.get(name);
         if found.is_none() {
             let all = self.catalog.shaders.iter().map(|entry| entry.name);
-            let hint = Hint::with_more(name, self.catalog.drawn_names(None), all);
-            reader.wrong(
-                shader.span,
-                Problem::UnknownName {
-                    what: "shader",
-                    name: name.to_owned(),
-                    hint,
-                },
-            );
+            let hint = reader.hint(|| Hint::with_more(name, self.catalog.drawn_names(None), all));
+            reader.wrong(shader.span, Problem::UnknownName { what: "shader", name: name.to_owned(), hint });
         }
         found
     }
@@ -161,24 +140,12 @@ impl<'a> Shaders<'a> {
         used.name = name.unwrap_or(entry.name).to_owned();
         used.place = Some(reader.texts.place(node.span));
         if entry.drawn {
-            used.values = reader.table(
-                &format!("shader {}", quote(entry.name)),
-                properties,
-                entry.params,
-            );
+            used.values = reader.table(&format!("shader {}", quote(entry.name)), properties, entry.params);
             return used;
         }
         // Its properties are not known yet: take those that what stands in shares with it, and any others as they are.
-        for member in properties
-            .iter()
-            .filter(|member| SHARED.contains(&member.key.as_str()))
-        {
-            if let Some(index) = used
-                .values
-                .params()
-                .iter()
-                .position(|param| param.name == member.key)
-            {
+        for member in properties.iter().filter(|member| SHARED.contains(&member.key.as_str())) {
+            if let Some(index) = used.values.params().iter().position(|param| param.name == member.key) {
                 reader.set(&mut used.values, index, &member.value);
             }
         }
@@ -186,25 +153,14 @@ impl<'a> Shaders<'a> {
     }
 
     /// A registered shader with its defaults, or what stands in for it; `place` asks for it.
-    fn with_defaults(
-        &self,
-        reader: &mut Reader<'_>,
-        entry: &CatalogEntry,
-        place: Place,
-    ) -> ShaderUse {
+    fn with_defaults(&self, reader: &mut Reader<'_>, entry: &CatalogEntry, place: Place) -> ShaderUse {
         let name = entry.name.to_owned();
         let basic = self.catalog.basic();
         let no_params: &'static [Param] = &[];
         let (drawing, params, stands_in_for) = match (entry.drawn, entry.role) {
             (true, _) => (entry.name, entry.params, None),
             (false, Role::Object) => {
-                reader.warn(
-                    place,
-                    Notice::ShaderNotDrawn {
-                        name: name.clone(),
-                        instead: basic.name,
-                    },
-                );
+                reader.warn(place, Notice::ShaderNotDrawn { name: name.clone(), instead: basic.name });
                 (basic.name, basic.params, Some(entry.name))
             }
             (false, Role::PostEffect) => {
@@ -230,13 +186,7 @@ impl<'a> Shaders<'a> {
 
     /// What a name in `mapping` refers to: an entry of `shaders`, else a registered shader with its defaults.
     /// `key` is where it stands.
-    pub(super) fn resolve(
-        &mut self,
-        reader: &mut Reader<'_>,
-        key: &str,
-        node: &Node,
-        role: Role,
-    ) -> Option<usize> {
+    pub(super) fn resolve(&mut self, reader: &mut Reader<'_>, key: &str, node: &Node, role: Role) -> Option<usize> {
         let expected = match role {
             Role::Object => "the name of a shader, or null to hide",
             Role::PostEffect => "a list of names of post effects",
@@ -247,25 +197,12 @@ impl<'a> Shaders<'a> {
         };
         if let Some(index) = self.declared.get(name) {
             let index = (*index)?;
-            return self
-                .check_role(reader, node, name, self.uses[index].role, role)
-                .then_some(index);
+            return self.check_role(reader, node, name, self.uses[index].role, role).then_some(index);
         }
         let Some(entry) = self.catalog.get(name) else {
-            let what = if role == Role::Object {
-                "shader"
-            } else {
-                "post effect"
-            };
-            let hint = self.names(name, role);
-            reader.wrong(
-                node.span,
-                Problem::UnknownName {
-                    what,
-                    name: name.to_owned(),
-                    hint,
-                },
-            );
+            let what = if role == Role::Object { "shader" } else { "post effect" };
+            let hint = reader.hint(|| self.names(name, role));
+            reader.wrong(node.span, Problem::UnknownName { what, name: name.to_owned(), hint });
             return None;
         };
         if !self.check_role(reader, node, name, entry.role, role) {
@@ -284,12 +221,7 @@ impl<'a> Shaders<'a> {
         }
     }
 
-    fn undeclared_use(
-        &mut self,
-        reader: &mut Reader<'_>,
-        entry: &CatalogEntry,
-        place: Place,
-    ) -> usize {
+    fn undeclared_use(&mut self, reader: &mut Reader<'_>, entry: &CatalogEntry, place: Place) -> usize {
         if let Some(index) = self.undeclared.get(entry.name) {
             return *index;
         }
@@ -299,21 +231,12 @@ impl<'a> Shaders<'a> {
         index
     }
 
-    fn check_role(
-        &self,
-        reader: &mut Reader<'_>,
-        node: &Node,
-        name: &str,
-        is: Role,
-        due: Role,
-    ) -> bool {
+    fn check_role(&self, reader: &mut Reader<'_>, node: &Node, name: &str, is: Role, due: Role) -> bool {
         if is == due {
             return true;
         }
-        let (hint, name) = (
-            Hint::list(self.names(name, due).allowed.iter().map(String::as_str)),
-            name.to_owned(),
-        );
+        let hint = reader.hint(|| Hint { nearest: None, ..self.names(name, due) });
+        let name = name.to_owned();
         let problem = match due {
             Role::Object => Problem::EffectAsShader { name, hint },
             Role::PostEffect => Problem::ShaderAsEffect { name, hint },
@@ -324,22 +247,12 @@ impl<'a> Shaders<'a> {
 
     /// What may stand where `name` stands: entries of the file in their order, then what is registered and drawn.
     fn names(&self, name: &str, role: Role) -> Hint {
-        let declared = self
-            .uses
-            .iter()
-            .filter(|used| used.place.is_some() && used.role == role);
-        let declared: Vec<&str> = declared.map(|used| used.name.as_str()).collect();
-        let of_role = self
-            .catalog
-            .shaders
-            .iter()
-            .filter(|entry| entry.role == role);
+        let declared = self.uses.iter().filter(|used| used.place.is_some() && used.role == role);
+        let declared: Vec<&str> = declared.map(|used| used.name.as_str()).take(MOST_COMPARED).collect();
+        let of_role = self.catalog.shaders.iter().filter(|entry| entry.role == role);
         let (drawn, not_yet): (Vec<_>, Vec<_>) = of_role.partition(|entry| entry.drawn);
         let names = |entry: &&CatalogEntry| -> &str { entry.name };
-        let undeclared = drawn
-            .iter()
-            .map(names)
-            .filter(|name| !declared.contains(name));
+        let undeclared = drawn.iter().map(names).filter(|name| !declared.contains(name));
         let listed = declared.iter().copied().take(MOST_NAMES).chain(undeclared);
         let unlisted = declared.iter().copied().skip(MOST_NAMES);
         Hint::with_more(name, listed, unlisted.chain(not_yet.iter().map(names)))
@@ -347,12 +260,5 @@ impl<'a> Shaders<'a> {
 }
 
 fn missing(reader: &mut Reader<'_>, entry: &Node, key: &'static str, hint: Hint) {
-    reader.wrong(
-        entry.span,
-        Problem::MissingKey {
-            owner: "this shader entry".to_owned(),
-            key,
-            hint,
-        },
-    );
+    reader.wrong(entry.span, Problem::MissingKey { owner: "this shader entry".to_owned(), key, hint });
 }

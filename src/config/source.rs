@@ -24,11 +24,7 @@ pub struct Source {
 impl Source {
     /// A text that is no file, such as an embedded look.
     pub fn new(name: impl Into<String>, text: impl Into<Vec<u8>>) -> Self {
-        Self {
-            name: name.into(),
-            text: text.into(),
-            path: None,
-        }
+        Self { name: name.into(), text: text.into(), path: None }
     }
 
     /// Whether both are the same file.
@@ -51,11 +47,7 @@ pub(super) struct Positions {
 
 impl Positions {
     pub(super) fn new(text: &[u8]) -> Self {
-        let breaks = text
-            .iter()
-            .enumerate()
-            .filter(|(_, byte)| **byte == b'\n')
-            .map(|(at, _)| at + 1);
+        let breaks = text.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at + 1);
         let mut chars_before = Vec::with_capacity(text.len() / BLOCK + 1);
         let mut count = 0;
         for block in text.chunks(BLOCK) {
@@ -63,10 +55,7 @@ impl Positions {
             count += count_chars(block);
         }
         chars_before.push(count);
-        Self {
-            line_starts: std::iter::once(0).chain(breaks).collect(),
-            chars_before,
-        }
+        Self { line_starts: std::iter::once(0).chain(breaks).collect(), chars_before }
     }
 
     /// Line and column of a byte, both from 1, the column in characters.
@@ -120,8 +109,7 @@ impl Text {
 
     /// Line and column alone.
     pub(super) fn line_column(&self, span: Span) -> (u32, u32) {
-        self.positions
-            .line_column(self.text.as_bytes(), span.start as usize)
+        self.positions.line_column(self.text.as_bytes(), span.start as usize)
     }
 }
 
@@ -179,10 +167,7 @@ fn path_at(root: &Node, offset: u32) -> String {
 
 /// Plain keys follow a dot, others are quoted in brackets.
 fn push_key(path: &mut String, key: &str) {
-    let plain = !key.is_empty()
-        && key
-            .chars()
-            .all(|c| c.is_alphanumeric() || matches!(c, '_' | '$' | '-' | '*'));
+    let plain = !key.is_empty() && key.chars().all(|c| c.is_alphanumeric() || matches!(c, '_' | '$' | '-' | '*'));
     if !plain {
         path.push_str(&format!("[{}]", super::hint::quote(key)));
         return;
@@ -201,9 +186,7 @@ mod tests {
     fn columns_count_characters() {
         let text = "ab\n\u{e9}\u{1F600}x\r\ny";
         let positions = Positions::new(text.as_bytes());
-        let at = |needle: &str| {
-            positions.line_column(text.as_bytes(), text.find(needle).expect("in the text"))
-        };
+        let at = |needle: &str| positions.line_column(text.as_bytes(), text.find(needle).expect("in the text"));
         assert_eq!(at("b"), (1, 2));
         assert_eq!(at("x"), (2, 3));
         assert_eq!(at("y"), (3, 1));
@@ -214,10 +197,7 @@ mod tests {
     fn columns_hold_over_blocks() {
         let text = "\u{e9}".repeat(5 * BLOCK) + "x";
         let positions = Positions::new(text.as_bytes());
-        assert_eq!(
-            positions.line_column(text.as_bytes(), text.len() - 1),
-            (1, 5 * BLOCK as u32 + 1)
-        );
+        assert_eq!(positions.line_column(text.as_bytes(), text.len() - 1), (1, 5 * BLOCK as u32 + 1));
     }
 
     #[test]

@@ -7,7 +7,6 @@ use super::catalog::{Catalog, Role};
 use super::error::{Mistakes, Notice, Place, Problem, Warning};
 use super::extends::Merged;
 use super::geometry::{self, Geometry};
-use super::hint::Hint;
 use super::light::Light;
 use super::param::Param;
 use super::read::{Reader, wrong_type};
@@ -22,17 +21,8 @@ use super::values::Values;
 pub const VERSION: u32 = 1;
 
 /// The keys of a style file.
-pub const KEYS: [&str; 9] = [
-    "$schema",
-    "version",
-    "extends",
-    "camera",
-    "geometry",
-    "mapping",
-    "shaders",
-    "lights",
-    "transparency",
-];
+pub const KEYS: [&str; 9] =
+    ["$schema", "version", "extends", "camera", "geometry", "mapping", "shaders", "lights", "transparency"];
 
 /// The key of `mapping` that lists post effects.
 const POST_EFFECTS: &str = "post_effects";
@@ -76,11 +66,7 @@ pub struct Style {
 impl Style {
     /// What draws an object, as an index into [`Style::shaders`]; `None` hides it.
     /// A connector is asked for twice, with the attributes of either atom.
-    pub fn shader_of<'a>(
-        &self,
-        kind: ObjectKind,
-        attribute: &dyn Fn(Attribute) -> Option<&'a str>,
-    ) -> Option<usize> {
+    pub fn shader_of<'a>(&self, kind: ObjectKind, attribute: &dyn Fn(Attribute) -> Option<&'a str>) -> Option<usize> {
         match self.rule_of(kind, attribute) {
             Some(rule) => rule.target,
             None => Some(self.basic),
@@ -88,49 +74,28 @@ impl Style {
     }
 
     /// The rule that decides about an object; `None`: no rule matches it.
-    pub fn rule_of<'a>(
-        &self,
-        kind: ObjectKind,
-        attribute: &dyn Fn(Attribute) -> Option<&'a str>,
-    ) -> Option<&Rule> {
-        self.mapping
-            .iter()
-            .find(|rule| rule.selector.matches(kind, attribute))
+    pub fn rule_of<'a>(&self, kind: ObjectKind, attribute: &dyn Fn(Attribute) -> Option<&'a str>) -> Option<&Rule> {
+        self.mapping.iter().find(|rule| rule.selector.matches(kind, attribute))
     }
 
     /// The attributes that decide about objects of a type: objects that are equal in these are drawn alike, so that
     /// an engine needs to ask once for each combination and not once for each of 100,000 atoms.
     pub fn attributes_used(&self, kind: ObjectKind) -> AttributeSet {
         let mut used = AttributeSet::default();
-        for rule in self
-            .mapping
-            .iter()
-            .filter(|rule| rule.selector.is_for(kind))
-        {
-            rule.selector
-                .attributes()
-                .iter()
-                .for_each(|attribute| used.insert(attribute));
+        for rule in self.mapping.iter().filter(|rule| rule.selector.is_for(kind)) {
+            rule.selector.attributes().iter().for_each(|attribute| used.insert(attribute));
         }
         used
     }
 }
 
 /// Resolves a merged tree.
-pub(super) fn resolve(
-    texts: &Texts,
-    merged: Merged,
-    catalog: &Catalog<'_>,
-) -> Result<Style, Mistakes> {
-    let mut reader = Reader {
-        texts,
-        mistakes: merged.mistakes,
-        warnings: Vec::new(),
-    };
+pub(super) fn resolve(texts: &Texts, merged: Merged, catalog: &Catalog<'_>) -> Result<Style, Mistakes> {
+    let mut reader = Reader { texts, mistakes: merged.mistakes, warnings: Vec::new() };
     let root = &merged.root;
     for member in reader.object("style", root) {
         if !KEYS.contains(&member.key.as_str()) {
-            reader.unknown_key("a style", member, Hint::new(&member.key, KEYS));
+            reader.unknown_key("a style", member, KEYS);
         }
     }
     if let Some(schema) = root.get("$schema") {
@@ -141,18 +106,9 @@ pub(super) fn resolve(
         None => Camera::new(&Values::defaults(super::camera::PARAMS)),
     };
     let geometry = Geometry::new(&section(&mut reader, root, "geometry", geometry::PARAMS));
-    let transparency = Transparency::new(&section(
-        &mut reader,
-        root,
-        "transparency",
-        transparency::PARAMS,
-    ));
+    let transparency = Transparency::new(&section(&mut reader, root, "transparency", transparency::PARAMS));
     let lights = match root.get("lights") {
-        Some(node) => reader
-            .list("lights", node)
-            .iter()
-            .map(|light| Light::read(&mut reader, light))
-            .collect(),
+        Some(node) => reader.list("lights", node).iter().map(|light| Light::read(&mut reader, light)).collect(),
         None => Light::default_lights(),
     };
     let mut shaders = Shaders::new(*catalog);
@@ -164,32 +120,12 @@ pub(super) fn resolve(
         None => (Vec::new(), Vec::new()),
     };
     let basic = shaders.basic(&mut reader);
-    let Reader {
-        mut mistakes,
-        mut warnings,
-        ..
-    } = reader;
-    let order = |place: &Place| {
-        (
-            texts.0.iter().position(|text| text.name == place.file),
-            place.start,
-        )
-    };
+    let Reader { mut mistakes, mut warnings, .. } = reader;
+    let order = |place: &Place| (texts.0.iter().position(|text| text.name == place.file), place.start);
     if mistakes.is_empty() {
         warnings.sort_by_key(|warning| order(&warning.place));
         let (shaders, files) = (shaders.uses, merged.files);
-        Ok(Style {
-            camera,
-            geometry,
-            mapping,
-            shaders,
-            basic,
-            post_effects,
-            lights,
-            transparency,
-            warnings,
-            files,
-        })
+        Ok(Style { camera, geometry, mapping, shaders, basic, post_effects, lights, transparency, warnings, files })
     } else {
         mistakes.list.sort_by_key(|mistake| order(&mistake.place));
         mistakes.files = merged.files;
@@ -222,8 +158,7 @@ fn read_mapping(
             }
             continue;
         }
-        let selector =
-            Selector::parse(&member.key).map_err(|problem| reader.wrong(member.key_span, problem));
+        let selector = Selector::parse(&member.key).map_err(|problem| reader.wrong(member.key_span, problem));
         let target = match &member.value.value {
             Tree::Null => None,
             _ => match shaders.resolve(reader, &member.key, &member.value, Role::Object) {
@@ -236,11 +171,7 @@ fn read_mapping(
         if let Some(kind) = selector.kind().filter(|kind| !catalog.kinds.contains(kind)) {
             reader.warn(place.clone(), Notice::TypeNotDrawn { name: kind.name() });
         }
-        rules.push(Rule {
-            selector,
-            target,
-            place,
-        });
+        rules.push(Rule { selector, target, place });
     }
     // The later of two equal ranks wins: turn the order round, then sort without disturbing it.
     rules.reverse();
@@ -257,20 +188,9 @@ pub(super) fn check_version(root: &Node) -> Result<(), (super::syntax::Span, Pro
     match node.value {
         Tree::Number(n) if n == f64::from(VERSION) => Ok(()),
         Tree::Number(value) => {
-            let allowed =
-                format!("be {VERSION}: this program reads no other version of style files");
-            Err((
-                node.span,
-                Problem::OutOfRange {
-                    name: "version".to_owned(),
-                    value,
-                    allowed,
-                },
-            ))
+            let allowed = format!("be {VERSION}: this program reads no other version of style files");
+            Err((node.span, Problem::OutOfRange { name: "version".to_owned(), value, allowed }))
         }
-        _ => Err((
-            node.span,
-            wrong_type("version", &format!("the number {VERSION}"), node),
-        )),
+        _ => Err((node.span, wrong_type("version", &format!("the number {VERSION}"), node))),
     }
 }

@@ -7,6 +7,7 @@
 use jsonc_parser::ast;
 use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
 
+use super::blank::{Blanked, blank};
 use super::error::{Mistakes, Place, Problem};
 use super::source::{Positions, Source, Text};
 
@@ -55,10 +56,7 @@ impl Node {
     /// The value of a key, if this is an object that has it.
     pub(super) fn get(&self, key: &str) -> Option<&Node> {
         match &self.value {
-            Tree::Object(members) => members
-                .iter()
-                .find(|member| member.key == key)
-                .map(|member| &member.value),
+            Tree::Object(members) => members.iter().find(|member| member.key == key).map(|member| &member.value),
             _ => None,
         }
     }
@@ -87,147 +85,30 @@ impl Node {
 }
 
 /// Parses a source as text number `file` of its style. Duplicate keys are pushed onto `mistakes` once the whole is JSON.
-pub(super) fn parse(
-    source: &Source,
-    file: u32,
-    mistakes: &mut Mistakes,
-) -> Result<Text, Box<(Place, Problem)>> {
-    let bytes = source
-        .text
-        .strip_prefix(b"\xEF\xBB\xBF")
-        .unwrap_or(&source.text);
+pub(super) fn parse(source: &Source, file: u32, mistakes: &mut Mistakes) -> Result<Text, Box<(Place, Problem)>> {
+    let bytes = source.text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&source.text);
     let whole = |problem| Box::new((Place::of_file(&source.name), problem));
     if bytes.len() > MAX_BYTES {
-        let limit = format!(
-            "a style is at most {} MB, and this file is larger",
-            MAX_BYTES / (1024 * 1024)
-        );
+        let limit = format!("a style is at most {} MB, and this file is larger", MAX_BYTES / (1024 * 1024));
         return Err(whole(Problem::Unreadable(limit)));
     }
     let positions = Positions::new(bytes);
     let at = |offset: usize, problem| {
         let (line, column) = positions.line_column(bytes, offset);
-        let place = Place {
-            line,
-            column,
-            start: offset,
-            end: offset,
-            ..Place::of_file(&source.name)
-        };
+        let place = Place { line, column, start: offset, end: offset, ..Place::of_file(&source.name) };
         Box::new((place, problem))
     };
     let text = str::from_utf8(bytes).map_err(|error| at(error.valid_up_to(), Problem::NotUtf8))?;
     if text.trim_ascii().is_empty() {
-        return Err(whole(Problem::Syntax(
-            "the file is empty: the smallest style is {}".to_owned(),
-        )));
+        return Err(whole(Problem::Syntax("the file is empty: the smallest style is {}".to_owned())));
     }
     let syntax = |(offset, message): (usize, String)| at(offset, Problem::Syntax(message));
     let blanked = blank(text).map_err(syntax)?;
     check_strictly(&blanked, &positions).map_err(syntax)?;
     let root = read_tree(&blanked.text, file).map_err(syntax)?;
-    let text = Text {
-        name: source.name.as_str().into(),
-        text: text.to_owned(),
-        positions,
-        root,
-    };
+    let text = Text { name: source.name.as_str().into(), text: text.to_owned(), positions, root };
     find_duplicates(&text.root, &text, mistakes);
     Ok(text)
-}
-
-/// A text without comments and trailing commas, as long as before.
-struct Blanked {
-    text: String,
-    /// The innermost bracket that is never closed, and its offset.
-    unclosed: Option<(u8, usize)>,
-}
-
-/// Replaces comments and trailing commas by spaces, and bounds the depth. Line breaks stay.
-fn blank(text: &str) -> Result<Blanked, (usize, String)> {
-    let mut bytes = text.as_bytes().to_vec();
-    let mut open: Vec<(u8, usize)> = Vec::new();
-    // The last byte that is neither space nor comment, its offset, and the one before it.
-    let (mut last, mut last_at, mut before_last) = (0u8, 0usize, 0u8);
-    let mut i = 0;
-    while i < bytes.len() {
-        let byte = bytes[i];
-        let start = i;
-        match (byte, bytes.get(i + 1)) {
-            (b'"', _) => i = end_of_string(&bytes, i),
-            (b'/', Some(b'/')) => {
-                i += bytes[i..]
-                    .iter()
-                    .position(|b| *b == b'\n')
-                    .unwrap_or(bytes.len() - i);
-                fill(&mut bytes[start..i]);
-                continue;
-            }
-            (b'/', Some(b'*')) => {
-                let Some(length) = bytes[i + 2..].windows(2).position(|pair| pair == b"*/") else {
-                    return Err((
-                        start,
-                        "this comment is never closed: */ is missing".to_owned(),
-                    ));
-                };
-                i += length + 4;
-                fill(&mut bytes[start..i]);
-                continue;
-            }
-            (b'{' | b'[', _) => {
-                open.push((byte, i));
-                if open.len() > MAX_DEPTH {
-                    return Err((
-                        i,
-                        format!("lists and objects are nested deeper than {MAX_DEPTH} levels"),
-                    ));
-                }
-                i += 1;
-            }
-            (b'}' | b']', _) => {
-                // After an opening bracket, a colon or another comma it is a mistake and stays one.
-                if last == b',' && !matches!(before_last, 0 | b',' | b':' | b'{' | b'[') {
-                    bytes[last_at] = b' ';
-                }
-                open.pop();
-                i += 1;
-            }
-            _ => i += 1,
-        }
-        if !byte.is_ascii_whitespace() {
-            (before_last, last, last_at) = (last, byte, start);
-        }
-    }
-    let text = String::from_utf8(bytes)
-        .map_err(|_| (0, "this comment is cut inside a character".to_owned()))?;
-    Ok(Blanked {
-        text,
-        unclosed: open.pop(),
-    })
-}
-
-/// One past the closing quote of the string that begins at `start`, or the end of the text.
-fn end_of_string(bytes: &[u8], start: usize) -> usize {
-    let mut i = start + 1;
-    while i < bytes.len() {
-        match bytes[i] {
-            b'"' => return i + 1,
-            // No text goes over a line break: the strict check will say so.
-            b'\n' => return i,
-            b'\\' => i += 2,
-            _ => i += 1,
-        }
-    }
-    bytes.len()
-}
-
-fn fill(bytes: &mut [u8]) {
-    for byte in bytes
-        .iter_mut()
-        .filter(|byte| !matches!(byte, b'\n' | b'\r'))
-    {
-        *byte = b' ';
-    }
 }
 
 /// Whether `serde_json` takes the text; its message in plainer words otherwise.
@@ -242,22 +123,13 @@ fn check_strictly(blanked: &Blanked, positions: &Positions) -> Result<(), (usize
         offset -= 1;
     }
     let full = error.to_string();
-    let message = full
-        .rsplit_once(" at line ")
-        .map_or(full.as_str(), |(message, _)| message);
+    let message = full.rsplit_once(" at line ").map_or(full.as_str(), |(message, _)| message);
     let message = match (message, blanked.unclosed) {
-        (m, Some((bracket, at)))
-            if m.starts_with("EOF while parsing") && !m.ends_with("a string") =>
-        {
+        (m, Some((bracket, at))) if m.starts_with("EOF while parsing") && !m.ends_with("a string") => {
             let (line, column) = positions.line_column(blanked.text.as_bytes(), at);
-            format!(
-                "the file ends, but the {} at {line}:{column} is not closed",
-                char::from(bracket)
-            )
+            format!("the file ends, but the {} at {line}:{column} is not closed", char::from(bracket))
         }
-        ("EOF while parsing a string", _) => {
-            "the file ends inside a text: a closing \" is missing".to_owned()
-        }
+        ("EOF while parsing a string", _) => "the file ends inside a text: a closing \" is missing".to_owned(),
         ("EOF while parsing a value", _) => "the file has no value, only comments".to_owned(),
         ("trailing characters", _) => "there is more text after the end of the style".to_owned(),
         (message, _) => plainer(message),
@@ -277,9 +149,9 @@ fn plainer(message: &str) -> String {
         "number out of range" => "this number is too large",
         "invalid number" => "numbers are written like 12, -0.5 or 1e-3",
         "invalid escape" => "there is no such \\ escape (a backslash itself is written \\\\)",
-        "unexpected end of hex escape"
-        | "lone leading surrogate in hex escape"
-        | "invalid unicode code point" => "this \\u escape is no character",
+        "unexpected end of hex escape" | "lone leading surrogate in hex escape" | "invalid unicode code point" => {
+            "this \\u escape is no character"
+        }
         message if message.starts_with("control character") => {
             "a text cannot hold a line break or control character: close it with \" on its line"
         }
@@ -304,10 +176,7 @@ fn read_tree(text: &str, file: u32) -> Result<Node, (usize, String)> {
     };
     let parsed = parse_to_ast(text, &CollectOptions::default(), &options)
         .map_err(|error| (error.range().start, error.kind().to_string()))?;
-    parsed
-        .value
-        .map(|value| node(value, file))
-        .ok_or((0, "the file has no value".to_owned()))
+    parsed.value.map(|value| node(value, file)).ok_or((0, "the file has no value".to_owned()))
 }
 
 fn node(value: ast::Value<'_>, file: u32) -> Node {
@@ -319,19 +188,8 @@ fn node(value: ast::Value<'_>, file: u32) -> Node {
         // The strict check refused every number that f64 cannot hold; NaN would be refused by each range.
         ast::Value::NumberLit(literal) => Tree::Number(literal.value.parse().unwrap_or(f64::NAN)),
         ast::Value::StringLit(literal) => Tree::Text(literal.value.into_owned()),
-        ast::Value::Array(list) => Tree::List(
-            list.elements
-                .into_iter()
-                .map(|item| node(item, file))
-                .collect(),
-        ),
-        ast::Value::Object(object) => Tree::Object(
-            object
-                .properties
-                .into_iter()
-                .map(|p| member(p, file))
-                .collect(),
-        ),
+        ast::Value::Array(list) => Tree::List(list.elements.into_iter().map(|item| node(item, file)).collect()),
+        ast::Value::Object(object) => Tree::Object(object.properties.into_iter().map(|p| member(p, file)).collect()),
     };
     Node { value, span }
 }
@@ -347,11 +205,7 @@ fn member(property: ast::ObjectProp<'_>, file: u32) -> Member {
 
 /// Texts are at most [`MAX_BYTES`] long, so that offsets fit.
 fn span(range: jsonc_parser::common::Range, file: u32) -> Span {
-    Span {
-        file,
-        start: range.start as u32,
-        end: range.end as u32,
-    }
+    Span { file, start: range.start as u32, end: range.end as u32 }
 }
 
 fn find_duplicates(node: &Node, text: &Text, mistakes: &mut Mistakes) {
@@ -361,22 +215,14 @@ fn find_duplicates(node: &Node, text: &Text, mistakes: &mut Mistakes) {
             for member in members {
                 let earlier = first.entry(member.key.as_str()).or_insert(member.key_span);
                 if *earlier != member.key_span {
-                    let (line, column) = text
-                        .positions
-                        .line_column(text.text.as_bytes(), earlier.start as usize);
-                    let problem = Problem::DuplicateKey {
-                        key: member.key.clone(),
-                        line,
-                        column,
-                    };
+                    let (line, column) = text.positions.line_column(text.text.as_bytes(), earlier.start as usize);
+                    let problem = Problem::DuplicateKey { key: member.key.clone(), line, column };
                     mistakes.push(|| text.place(member.key_span), problem);
                 }
                 find_duplicates(&member.value, text, mistakes);
             }
         }
-        Tree::List(items) => items
-            .iter()
-            .for_each(|item| find_duplicates(item, text, mistakes)),
+        Tree::List(items) => items.iter().for_each(|item| find_duplicates(item, text, mistakes)),
         Tree::Null | Tree::Bool(_) | Tree::Number(_) | Tree::Text(_) => {}
     }
 }
@@ -388,10 +234,7 @@ mod tests {
     fn tree(text: &str) -> Tree {
         let mut mistakes = Mistakes::default();
         let parsed = parse(&Source::new("s.json", text), 0, &mut mistakes);
-        parsed
-            .unwrap_or_else(|wrong| panic!("{}", wrong.1))
-            .root
-            .value
+        parsed.unwrap_or_else(|wrong| panic!("{}", wrong.1)).root.value
     }
 
     fn message(text: &str) -> String {
@@ -399,23 +242,6 @@ mod tests {
             Ok(_) => panic!("{text} is no style, but was read"),
             Err(wrong) => format!("{}: {}", wrong.0, wrong.1),
         }
-    }
-
-    #[test]
-    fn blanking_keeps_every_offset() {
-        let text = "// \u{e9}\r\n[1, /* , */ \"//,]\", {\"a\": 1 , }, // x\n]";
-        let blanked = blank(text).unwrap();
-        assert_eq!(blanked.text.len(), text.len());
-        assert_eq!(
-            blanked.text.replace(' ', ""),
-            "\r\n[1,\"//,]\",{\"a\":1}\n]"
-        );
-        let positions = |text: &str| {
-            text.match_indices('\n')
-                .map(|(at, _)| at)
-                .collect::<Vec<_>>()
-        };
-        assert_eq!(positions(&blanked.text), positions(text));
     }
 
     #[test]
@@ -456,35 +282,20 @@ mod tests {
 
     #[test]
     fn values_and_escapes_are_read() {
-        let Tree::List(items) = tree("[\"\\u00e9\\n\\ud83d\\ude00\", -0.5e1, true, null, \"\"]")
-        else {
+        let Tree::List(items) = tree("[\"\\u00e9\\n\\ud83d\\ude00\", -0.5e1, true, null, \"\"]") else {
             panic!("this is a list")
         };
         let values: Vec<Tree> = items.into_iter().map(|item| item.value).collect();
         let text = |text: &str| Tree::Text(text.to_owned());
-        assert_eq!(
-            values,
-            [
-                text("\u{e9}\n\u{1F600}"),
-                Tree::Number(-5.0),
-                Tree::Bool(true),
-                Tree::Null,
-                text("")
-            ]
-        );
+        assert_eq!(values, [text("\u{e9}\n\u{1F600}"), Tree::Number(-5.0), Tree::Bool(true), Tree::Null, text("")]);
     }
 
     #[test]
     fn spans_cover_keys_and_values() {
         let text = "{ \"a\" : [10, \"\u{e9}\"] }";
-        let Tree::Object(members) = tree(text) else {
-            panic!("this is an object")
-        };
+        let Tree::Object(members) = tree(text) else { panic!("this is an object") };
         let of = |span: Span| &text[span.start as usize..span.end as usize];
-        assert_eq!(
-            (of(members[0].key_span), of(members[0].value.span)),
-            ("\"a\"", "[10, \"\u{e9}\"]")
-        );
+        assert_eq!((of(members[0].key_span), of(members[0].value.span)), ("\"a\"", "[10, \"\u{e9}\"]"));
     }
 
     #[test]

@@ -7,14 +7,8 @@ use super::values::Values;
 pub const PARAMS: &[Param] = &[
     Param::choice("method", &["auto", "bkb", "exact"], "auto")
         .doc("auto takes the cheapest that is right for the scene."),
-    Param::count("k", 8)
-        .range(1.0, 64.0)
-        .unit("fragments")
-        .doc("Most fragments that are kept for each pixel."),
-    Param::count("memory_mb", 512)
-        .range(16.0, 65536.0)
-        .unit("MB")
-        .doc("Most memory that the fragments may take."),
+    Param::count("k", 8).range(1.0, 64.0).unit("fragments").doc("Most fragments that are kept for each pixel."),
+    Param::count("memory_mb", 512).range(16.0, 65536.0).unit("MB").doc("Most memory that the fragments may take."),
 ];
 
 /// How fragments are put in order.
@@ -42,11 +36,7 @@ pub struct Transparency {
 impl Transparency {
     /// The transparency that the values of [`PARAMS`] describe.
     pub fn new(values: &Values) -> Self {
-        let methods = [
-            TransparencyMethod::Auto,
-            TransparencyMethod::Bkb,
-            TransparencyMethod::Exact,
-        ];
+        let methods = [TransparencyMethod::Auto, TransparencyMethod::Bkb, TransparencyMethod::Exact];
         Self {
             method: methods[values.choice_index("method")],
             k: values.count("k"),

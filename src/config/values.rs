@@ -27,12 +27,7 @@ pub struct Values {
 /// Equal values of one table are equal wherever they were written.
 impl PartialEq for Values {
     fn eq(&self, other: &Self) -> bool {
-        let values = |of: &Self| {
-            of.entries
-                .iter()
-                .map(|(value, _)| value.clone())
-                .collect::<Vec<_>>()
-        };
+        let values = |of: &Self| of.entries.iter().map(|(value, _)| value.clone()).collect::<Vec<_>>();
         self.params == other.params && values(self) == values(other)
     }
 }
@@ -43,16 +38,8 @@ impl Values {
     /// # Panics
     /// If a default does not fit its parameter, which [`super::param::check_table`] finds in a test.
     pub fn defaults(params: &'static [Param]) -> Self {
-        let default = |param: &Param| {
-            (
-                param.default_value().expect("tables are checked by a test"),
-                Origin::Default,
-            )
-        };
-        Self {
-            params,
-            entries: params.iter().map(default).collect(),
-        }
+        let default = |param: &Param| (param.default_value().expect("tables are checked by a test"), Origin::Default);
+        Self { params, entries: params.iter().map(default).collect() }
     }
 
     /// The table.
@@ -62,10 +49,7 @@ impl Values {
 
     /// Each parameter with its value and origin, in the order of the table.
     pub fn iter(&self) -> impl Iterator<Item = (&'static Param, &Value, &Origin)> {
-        self.params
-            .iter()
-            .zip(&self.entries)
-            .map(|(param, (value, origin))| (param, value, origin))
+        self.params.iter().zip(&self.entries).map(|(param, (value, origin))| (param, value, origin))
     }
 
     /// A value, if the table has the parameter.
@@ -91,12 +75,7 @@ impl Values {
         self.params.iter().position(|param| param.name == name)
     }
 
-    fn expect<'a, T>(
-        &'a self,
-        name: &str,
-        kind: &str,
-        of: impl FnOnce(&'a Value) -> Option<T>,
-    ) -> T {
+    fn expect<'a, T>(&'a self, name: &str, kind: &str, of: impl FnOnce(&'a Value) -> Option<T>) -> T {
         match self.get(name).and_then(of) {
             Some(value) => value,
             None => panic!("the table of this shader declares no {kind} {name:?}"),
@@ -163,9 +142,7 @@ impl Values {
 
     /// The word that is chosen.
     pub fn choice(&self, name: &str) -> &'static str {
-        let choices = self
-            .index(name)
-            .map_or(&[][..], |i| self.params[i].choices());
+        let choices = self.index(name).map_or(&[][..], |i| self.params[i].choices());
         choices[self.choice_index(name)]
     }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 
 use super::palette::AtomColors;
-use crate::config::{AtomRadius, Attribute, BaseColor, ObjectKind, Style};
+use crate::config::{AtomRadius, Attribute, BaseColor, ObjectKind, Style, Value};
 use crate::frame::Materials;
 use crate::frame::objects::{self, Connector, DrawList, Material, pack_linear};
 use crate::providers::{Lengths, ObjectAttributes, ShaderProvider};
@@ -70,7 +70,8 @@ pub fn build(molecule: &Molecule, style: &Style, exposure_factor: f32, height_px
     let mut drawn_radii: Vec<f32> =
         molecule.atoms.iter().zip(&uses).filter(|(_, used)| used.is_some()).map(|(atom, _)| radius(atom)).collect();
     let middle = drawn_radii.len() / 2;
-    let median = (!drawn_radii.is_empty()).then(|| f64::from(*drawn_radii.select_nth_unstable_by(middle, f32::total_cmp).1));
+    let median =
+        (!drawn_radii.is_empty()).then(|| f64::from(*drawn_radii.select_nth_unstable_by(middle, f32::total_cmp).1));
     let lengths = Lengths::new(bounds, median);
 
     let mut materials = MaterialTable::new(style, exposure_factor, lengths, height_px);
@@ -139,7 +140,11 @@ fn connector_use<'a>(
 }
 
 fn scheme(shader: &crate::config::ShaderUse) -> BaseColor {
-    shader.values.base_color(shading::BASE_COLOR.name)
+    // Post effects are in the same list and have none.
+    match shader.values.get(shading::BASE_COLOR.name) {
+        Some(Value::BaseColor(color)) => *color,
+        _ => BaseColor::Element,
+    }
 }
 
 /// Whether a connector lies wholly within its two atoms: their spheres meet in a circle wider than it is.
@@ -195,14 +200,7 @@ struct MaterialTable<'a> {
 impl<'a> MaterialTable<'a> {
     fn new(style: &'a Style, exposure_factor: f32, lengths: Lengths, height_px: u32) -> MaterialTable<'a> {
         let context = MaterialContext { exposure_factor };
-        MaterialTable {
-            style,
-            context,
-            lengths,
-            height_px,
-            index_of: BTreeMap::new(),
-            materials: Materials::default(),
-        }
+        MaterialTable { style, context, lengths, height_px, index_of: BTreeMap::new(), materials: Materials::default() }
     }
 
     fn material(&mut self, used: usize) -> u32 {
@@ -215,6 +213,7 @@ impl<'a> MaterialTable<'a> {
         let shader = SHADERS[shader_index];
         let bytes = shader.material(&shader_use.values, &self.context);
         let params = self.materials.params.entry(shader_index).or_default();
+        *self.materials.features.entry(shader_index).or_default() |= shader.features_used(&shader_use.values);
         let params_index = params.len() / bytes.len().max(1);
         params.extend_from_slice(&bytes);
         let base_color = match scheme(shader_use) {

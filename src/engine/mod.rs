@@ -119,8 +119,7 @@ impl Engine {
         let molecule = &self.scene.molecule;
         let built = build::build(molecule, &self.style, self.camera.exposure_factor(), height);
         self.renderer.set_contents(&built.list, &built.materials)?;
-        let lighting =
-            LightingProvider::new(self.style.lights.clone(), molecule.bounding_sphere(), built.lengths);
+        let lighting = LightingProvider::new(self.style.lights.clone(), molecule.bounding_sphere(), built.lengths);
         self.lighting = Some(lighting.clone());
         self.built_for = Some(height);
         Ok(lighting)
@@ -149,7 +148,11 @@ impl Engine {
         } else {
             Pixels::U8(bytes)
         };
-        Ok(Image { size: request.size, pixels, opaque: !request.transparent && self.camera.background(false)[3] >= 1.0 })
+        Ok(Image {
+            size: request.size,
+            pixels,
+            opaque: !request.transparent && self.camera.background(false)[3] >= 1.0,
+        })
     }
 
     /// Draws and reads one still.

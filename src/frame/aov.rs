@@ -56,11 +56,13 @@ impl Aov {
 
 /// The WGSL of the geometry AOVs.
 pub fn aov_module() -> Module {
-    Module::new(&[
+    let mut module = Module::new(&[
         wgsl!("lib/view.wgsl"),
         wgsl!("lib/objects.wgsl"),
         wgsl!("lib/intersect.wgsl"),
         wgsl!("lib/surface.wgsl"),
-        wgsl!("objects/aov.wgsl"),
-    ])
+    ]);
+    module.add_generated("aov options", "const ATOMS: bool = true;\nconst CONNECTORS: bool = true;".to_owned());
+    module.add(wgsl!("objects/aov.wgsl"));
+    module
 }

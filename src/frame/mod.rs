@@ -20,18 +20,18 @@ pub use aov::aov_module;
 pub use lights::{Light, Lights, MAX_LIGHTS};
 use objects::{DrawList, Material, ObjectBuffers};
 pub use resolve::resolve_module;
-pub use shade::{Output, ShadeKey, shade_module};
-use shade::{Shade, ShadeInputs};
+pub use shade::{Output, ShadeKey, ShaderNeeds, shade_module};
+use shade::{Shade, ShadeInputs, ShadeTarget};
 pub use shadow::{MAX_SHADOWS, ShadowView, Shadows};
 use shadow::{ShadowMaps, ShadowPlan};
-use targets::Targets;
 pub use targets::TargetBytes;
+use targets::Targets;
 pub use view::{View, sample_offset_px};
 pub use visibility::visibility_module;
 use visibility::{DEPTH_FORMAT, ID_FORMAT, Visibility, VisibilityPass};
 
 use crate::gpu::{Gpu, GpuError, GpuStruct, PassTimer, PassTimes, StructInfo, read_texture};
-use crate::scene::{Camera, Lighting, Sphere};
+use crate::scene::{Camera, LightPlace, Lighting, Sphere};
 use crate::shading::SHADERS;
 
 /// Pictures of 8 bits a channel, sRGB values written by the shader.
@@ -57,6 +57,8 @@ pub struct Materials {
     pub common: Vec<Material>,
     /// Bytes of the parameter sets, by the shader's place in the registry.
     pub params: BTreeMap<usize, Vec<u8>>,
+    /// Features that the materials of each shader use, one bit each.
+    pub features: BTreeMap<usize, u32>,
 }
 
 impl Materials {
@@ -98,8 +100,8 @@ struct Contents {
     objects: ObjectBuffers,
     materials: wgpu::Buffer,
     params: Vec<wgpu::Buffer>,
-    shaders: Vec<usize>,
-    hulls: bool,
+    /// The needs of the objects; those of lights and output are filled in for each frame.
+    needs: ShadeKey,
 }
 
 /// Draws frames of one scene in one style.
@@ -141,13 +143,7 @@ impl Renderer {
         let common = self.gpu.storage("materials", &materials.common)?;
         let params: Result<Vec<_>, _> =
             materials.params.values().map(|bytes| self.gpu.storage("shader materials", bytes)).collect();
-        self.contents = Some(Contents {
-            objects,
-            materials: common,
-            params: params?,
-            shaders: materials.params.keys().copied().collect(),
-            hulls: materials.has_hulls(),
-        });
+        self.contents = Some(Contents { objects, materials: common, params: params?, needs: needs(list, materials) });
         Ok(())
     }
 
@@ -168,26 +164,28 @@ impl Renderer {
         // What this frame needs.
         let samples = input.samples.clamp(1, MAX_SAMPLES);
         let direct = samples == 1 && !input.wide;
-        let plan = ShadowPlan::new(
-            input.lighting,
-            input.camera,
-            input.bounds,
-            shadow::map_size(&gpu, input.size[1]),
-        );
+        let plan = ShadowPlan::new(input.lighting, input.camera, input.bounds, shadow::map_size(&gpu, input.size[1]));
         let shadowed = !plan.views.is_empty();
-        let key = ShadeKey { shaders: contents.shaders.clone(), shadows: shadowed, encode: direct };
+        let key = ShadeKey {
+            lights: input.lighting.lights.len().min(MAX_LIGHTS) as u32,
+            point_lights: input.lighting.lights.iter().any(|light| matches!(light.place, LightPlace::Point { .. })),
+            shadows: shadowed,
+            encode: direct,
+            ..contents.needs.clone()
+        };
+        let hulls = key.hulls;
 
         // Pipelines and targets that are not there yet.
-        self.pipelines_built += self.visibility.prepare(&gpu, &contents.objects, contents.hulls)?;
-        if shadowed && contents.hulls {
+        self.pipelines_built += self.visibility.prepare(&gpu, &contents.objects, hulls)?;
+        if shadowed && hulls {
             self.pipelines_built += self.visibility.prepare(&gpu, &contents.objects, false)?;
         }
         self.pipelines_built += self.shade.prepare(&gpu, &self.visibility, &key)?;
         if !direct {
             self.pipelines_built += self.resolve.prepare(&gpu, input.wide)?;
         }
-        let maps = shadowed
-            .then(|| ShadowMaps::new(&gpu, plan.views[0].light.size_px[0] as u32, plan.views.len() as u32));
+        let maps =
+            shadowed.then(|| ShadowMaps::new(&gpu, plan.views[0].light.size_px[0] as u32, plan.views.len() as u32));
         self.targets.fit(&gpu, input.size, if input.wide { OUTPUT_16 } else { OUTPUT_8 }, !direct);
 
         // Uniforms and bindings: a view for each sample, then one for each shadow map.
@@ -215,14 +213,14 @@ impl Renderer {
             let Some(maps) = &maps else { break };
             let (map_ids, map_depth) = maps.layer(layer as u32);
             let pass = VisibilityPass { name: "shadow", view: index, hulls: false, ids: &map_ids, depth: &map_depth };
-            self.visibility.draw(&mut encoder, &scene, &contents.objects, &pass, true, &mut timer);
+            self.visibility.draw(&mut encoder, &scene, &contents.objects, &pass, &mut timer);
         }
-        let target = light.as_ref().unwrap_or(&output);
+        let clear = if direct { clear_value(input.background) } else { wgpu::Color::TRANSPARENT };
+        let target = ShadeTarget { light: light.as_ref().unwrap_or(&output), depth: &depth, clear };
         for index in 0..samples as usize {
-            let pass =
-                VisibilityPass { name: "visibility", view: index, hulls: contents.hulls, ids: &ids, depth: &depth };
-            self.visibility.draw(&mut encoder, &scene, &contents.objects, &pass, false, &mut timer);
-            self.shade.draw(&mut encoder, &key, &scene, index, &shade_group, target, &mut timer);
+            let pass = VisibilityPass { name: "visibility", view: index, hulls, ids: &ids, depth: &depth };
+            self.visibility.draw(&mut encoder, &scene, &contents.objects, &pass, &mut timer);
+            self.shade.draw(&mut encoder, &key, &scene, index, &shade_group, &target, &mut timer);
             if (index + 1) % SAMPLES_PER_SUBMISSION == 0 && index + 1 < samples as usize {
                 gpu.queue.submit([std::mem::replace(&mut encoder, frame_encoder(&gpu)).finish()]);
                 gpu.wait()?;
@@ -315,6 +313,47 @@ impl Renderer {
     pub fn target_bytes(&self) -> TargetBytes {
         self.targets.bytes()
     }
+}
+
+/// What the shading of these objects reads, lights and output aside.
+fn needs(list: &DrawList, materials: &Materials) -> ShadeKey {
+    fn common(mut materials: impl Iterator<Item = u32>) -> Option<u32> {
+        let first = materials.next()?;
+        materials.all(|material| material == first).then_some(first)
+    }
+    let shaders = materials.params.keys().map(|&shader| ShaderNeeds {
+        shader,
+        features: materials.features.get(&shader).copied().unwrap_or(0),
+        only_material: {
+            let mut using = (0..).zip(&materials.common).filter(|(_, material)| material.shader as usize == shader);
+            match (using.next(), using.next()) {
+                (Some((material, _)), None) => Some(material),
+                _ => None,
+            }
+        },
+    });
+    ShadeKey {
+        shaders: shaders.collect(),
+        atoms: !list.atoms.is_empty(),
+        connectors: !list.connectors.is_empty(),
+        atom_material: common(list.atoms.iter().map(|atom| atom.material)),
+        connector_material: common(list.connectors.iter().map(|connector| connector.material)),
+        hulls: materials.has_hulls(),
+        lights: 0,
+        point_lights: false,
+        shadows: false,
+        encode: false,
+    }
+}
+
+/// A premultiplied linear background as the straight-alpha sRGB value that a direct frame leaves where nothing is.
+fn clear_value(background: [f32; 4]) -> wgpu::Color {
+    let alpha = f64::from(background[3]);
+    let channel = |value: f32| {
+        let linear = if alpha > 0.0 { f64::from(value) / alpha } else { 0.0 };
+        if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+    };
+    wgpu::Color { r: channel(background[0]), g: channel(background[1]), b: channel(background[2]), a: alpha }
 }
 
 fn frame_encoder(gpu: &Gpu) -> wgpu::CommandEncoder {

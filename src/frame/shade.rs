@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::lights::Lights;
 use super::shadow::{ShadowMaps, Shadows};
-use super::visibility::{SceneBindings, Visibility};
+use super::visibility::{DEPTH_FORMAT, SceneBindings, Visibility};
 use crate::gpu::{Gpu, GpuError, Module, PassTimer};
 use crate::gpu_struct;
 use crate::shading::{self, ObjectShader, SHADERS, UploadedResource};
@@ -19,15 +19,41 @@ gpu_struct! {
     }
 }
 
-/// What a shading pipeline is built for; equal needs share one pipeline.
+/// What a shading pipeline is built for; equal needs share one pipeline. Whatever a frame does not use is no part of its
+/// shader, since a software adapter runs every line of a shader for every pixel.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ShadeKey {
-    /// Places in the registry of the shaders that the style uses, ascending.
-    pub shaders: Vec<usize>,
+    /// The shaders that the style uses, ascending by registry place.
+    pub shaders: Vec<ShaderNeeds>,
+    /// Whether there are atoms.
+    pub atoms: bool,
+    /// Whether there are connectors.
+    pub connectors: bool,
+    /// The one material of all atoms, where there is only one.
+    pub atom_material: Option<u32>,
+    /// The one material of all connectors, where there is only one.
+    pub connector_material: Option<u32>,
+    /// Whether a material has a hull outline.
+    pub hulls: bool,
+    /// Directional and point lights.
+    pub lights: u32,
+    /// Whether one of them is a point light.
+    pub point_lights: bool,
     /// Whether a light casts shadows.
     pub shadows: bool,
     /// Straight to 8-bit picture values, instead of adding up linear light.
     pub encode: bool,
+}
+
+/// What a style needs of one shader.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ShaderNeeds {
+    /// Its place in the registry.
+    pub shader: usize,
+    /// The features that its materials use, one bit each.
+    pub features: u32,
+    /// The material that alone uses it, where only one does.
+    pub only_material: Option<u32>,
 }
 
 /// First binding of the shaders' own bindings in group 1.
@@ -52,6 +78,16 @@ pub struct ShadeInputs<'a> {
     pub materials: &'a [wgpu::Buffer],
 }
 
+/// Where the shading pass draws.
+pub struct ShadeTarget<'a> {
+    /// Light, or picture values.
+    pub light: &'a wgpu::TextureView,
+    /// Depths of the visibility pass.
+    pub depth: &'a wgpu::TextureView,
+    /// What stays where nothing is seen.
+    pub clear: wgpu::Color,
+}
+
 /// Pipelines of the shading pass, by need, and the resources of its shaders.
 #[derive(Default)]
 pub struct Shade {
@@ -65,7 +101,7 @@ impl Shade {
     /// # Errors
     /// [`GpuError::Driver`] where a shader does not compile.
     pub fn prepare(&mut self, gpu: &Gpu, visibility: &Visibility, key: &ShadeKey) -> Result<u32, GpuError> {
-        for &shader in &key.shaders {
+        for shader in key.shaders.iter().map(|needs| needs.shader) {
             if !self.resources.contains_key(&shader) {
                 let uploaded: Result<Vec<_>, _> =
                     SHADERS[shader].resources().iter().map(|resource| shading::upload(gpu, resource)).collect();
@@ -106,7 +142,14 @@ impl Shade {
                 buffers: &[],
             },
             primitive: Default::default(),
-            depth_stencil: None,
+            // The pass lies at depth 0, behind all that is drawn: it passes only where something is in front of it.
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH_FORMAT,
+                depth_write_enabled: Some(false),
+                depth_compare: Some(wgpu::CompareFunction::Less),
+                stencil: Default::default(),
+                bias: Default::default(),
+            }),
             multisample: Default::default(),
             fragment: Some(wgpu::FragmentState {
                 module: &module,
@@ -152,7 +195,7 @@ impl Shade {
             entries.push(entry(5, texture(wgpu::TextureSampleType::Depth, D2Array)));
         }
         let mut binding = FIRST_SHADER_BINDING;
-        for shader in &key.shaders {
+        for shader in key.shaders.iter().map(|needs| &needs.shader) {
             entries.push(entry(binding, storage));
             binding += 1;
             for resource in self.resources.get(shader).into_iter().flatten() {
@@ -164,7 +207,8 @@ impl Shade {
                 binding += 1;
             }
         }
-        gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("shade"), entries: &entries })
+        gpu.device
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("shade"), entries: &entries })
     }
 
     /// Binds the inputs of one frame.
@@ -184,7 +228,7 @@ impl Shade {
             entries.push(wgpu::BindGroupEntry { binding: 5, resource: wgpu::BindingResource::TextureView(depth) });
         }
         let mut binding = FIRST_SHADER_BINDING;
-        for (shader, materials) in key.shaders.iter().zip(inputs.materials) {
+        for (shader, materials) in key.shaders.iter().map(|needs| &needs.shader).zip(inputs.materials) {
             entries.push(wgpu::BindGroupEntry { binding, resource: materials.as_entire_binding() });
             binding += 1;
             for resource in self.resources.get(shader).into_iter().flatten() {
@@ -203,7 +247,7 @@ impl Shade {
         }))
     }
 
-    /// Shades all pixels of view `view_index`; the first one clears the target.
+    /// Shades the pixels of view `view_index` that see something; the first view clears the target to `clear`.
     #[allow(clippy::too_many_arguments)]
     pub fn draw(
         &self,
@@ -212,20 +256,24 @@ impl Shade {
         scene: &SceneBindings,
         view_index: usize,
         inputs: &wgpu::BindGroup,
-        target: &wgpu::TextureView,
+        to: &ShadeTarget<'_>,
         timer: &mut Option<PassTimer>,
     ) {
         let Some(pipeline) = self.pipelines.get(key) else { return };
-        let load = if view_index == 0 { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) } else { wgpu::LoadOp::Load };
+        let load = if view_index == 0 { wgpu::LoadOp::Clear(to.clear) } else { wgpu::LoadOp::Load };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shade"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: target,
+                view: to.light,
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
             })],
-            depth_stencil_attachment: None,
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: to.depth,
+                depth_ops: None,
+                stencil_ops: None,
+            }),
             timestamp_writes: timer.as_mut().and_then(|timer| timer.pass("shade")),
             occlusion_query_set: None,
             multiview_mask: None,
@@ -248,7 +296,11 @@ pub fn shade_module(key: &ShadeKey) -> Module {
         if key.shadows { wgsl!("lib/shadow.wgsl") } else { wgsl!("lib/shadow_none.wgsl") },
         wgsl!("lib/encode.wgsl"),
     ]);
-    let mut bindings = format!("const ENCODE: bool = {};\n", key.encode);
+    let mut bindings = format!(
+        "const ENCODE: bool = {};\nconst ATOMS: bool = {};\nconst CONNECTORS: bool = {};\nconst HULLS: bool = {};\n\
+         const SHADOWS: bool = {};\nconst LIGHT_COUNT: u32 = {}u;\nconst POINT_LIGHTS: bool = {};\n",
+        key.encode, key.atoms, key.connectors, key.hulls, key.shadows, key.lights, key.point_lights
+    );
     if key.shadows {
         bindings.push_str(
             "@group(1) @binding(3) var<uniform> shadows: Shadows;\n\
@@ -258,10 +310,13 @@ pub fn shade_module(key: &ShadeKey) -> Module {
     }
     let mut binding = FIRST_SHADER_BINDING;
     let mut cases = String::new();
-    for &index in &key.shaders {
-        let shader: &dyn ObjectShader = SHADERS[index];
+    for needs in &key.shaders {
+        let shader: &dyn ObjectShader = SHADERS[needs.shader];
         for file in shader.wgsl() {
             module.add(*file);
+        }
+        for (bit, feature) in shader.features().iter().enumerate() {
+            bindings.push_str(&format!("const {feature}: bool = {};\n", needs.features >> bit & 1 == 1));
         }
         let declarations = std::iter::once(shading::material_declaration(shader))
             .chain(shader.resources().iter().map(|resource| resource.declaration.to_owned()));
@@ -270,14 +325,46 @@ pub fn shade_module(key: &ShadeKey) -> Module {
             binding += 1;
         }
         let name = shader.name();
-        cases.push_str(&format!(
-            "        case {index}u: {{ return {name}_shade(s, {name}_materials[material.index]); }}\n"
-        ));
+        // A constant index is one load for all pixels, a varying one a load for each.
+        let (material, params) = match needs.only_material {
+            Some(material) => (format!("materials[{material}u]"), "0u".to_owned()),
+            None => ("materials[material]".to_owned(), "materials[material].index".to_owned()),
+        };
+        let call =
+            format!("return {name}_shade(with_base_color(s, {material}.base_color), {name}_materials[{params}]);");
+        let condition = match needs.only_material {
+            _ if key.shaders.len() == 1 => "true".to_owned(),
+            Some(material) => format!("material == {material}u"),
+            None => format!("materials[material].shader == {}u", needs.shader),
+        };
+        cases.push_str(&format!("    if {condition} {{ {call} }}\n"));
     }
     bindings.push_str(&format!(
-        "fn shade_object(s: Surface, material: Material) -> vec3<f32> {{\n    switch material.shader {{\n{cases}        default: {{ return s.base_color; }}\n    }}\n}}\n"
+        "fn with_base_color(s: Surface, color: vec4<f32>) -> Surface {{\n    var colored = s;\n    \
+         colored.base_color = mix(s.base_color, color.rgb, color.a);\n    return colored;\n}}\n\
+         fn shade_object(s: Surface, material: u32) -> vec3<f32> {{\n{cases}    return s.base_color;\n}}\n"
     ));
+    bindings.push_str(&material_function(key));
     module.add_generated("shade bindings", bindings);
     module.add(wgsl!("objects/shade.wgsl"));
     module
+}
+
+/// `material_of`: the material of an id, from memory only where it is not the same for all objects of a kind.
+fn material_function(key: &ShadeKey) -> String {
+    let source = |constant: Option<u32>, array: &str| match constant {
+        Some(material) => format!("{material}u"),
+        None => format!("{array}[id & INDEX_MASK].material"),
+    };
+    let atoms = source(key.atom_material, "atoms");
+    let connectors = source(key.connector_material, "connectors");
+    let body = match (key.atoms, key.connectors) {
+        (true, true) if atoms == connectors && key.atom_material.is_some() => format!("    return {atoms};\n"),
+        (true, true) => format!(
+            "    let kind = id >> 29u;\n    if kind == KIND_ATOM || kind == KIND_ATOM_HULL {{ return {atoms}; }}\n    return {connectors};\n"
+        ),
+        (_, false) => format!("    return {atoms};\n"),
+        (false, true) => format!("    return {connectors};\n"),
+    };
+    format!("fn material_of(id: u32) -> u32 {{\n{body}}}\n")
 }

@@ -27,9 +27,7 @@ impl Targets {
         let former = self.set.take().filter(|set| set.size == size);
         let (ids, depth, former_output, former_light) = match former {
             Some(set) => (set.ids, set.depth, Some(set.output), set.light),
-            None => {
-                (gpu.target("ids", size, 1, ID_FORMAT), gpu.target("depth", size, 1, DEPTH_FORMAT), None, None)
-            }
+            None => (gpu.target("ids", size, 1, ID_FORMAT), gpu.target("depth", size, 1, DEPTH_FORMAT), None, None),
         };
         let output = former_output
             .filter(|texture| texture.format() == output)

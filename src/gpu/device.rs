@@ -158,7 +158,13 @@ impl Gpu {
     }
 
     /// A texture that passes draw to, read from, and that can be copied out.
-    pub fn target(&self, label: &'static str, size: [u32; 2], layers: u32, format: wgpu::TextureFormat) -> wgpu::Texture {
+    pub fn target(
+        &self,
+        label: &'static str,
+        size: [u32; 2],
+        layers: u32,
+        format: wgpu::TextureFormat,
+    ) -> wgpu::Texture {
         self.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
             size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: layers },

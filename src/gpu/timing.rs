@@ -25,7 +25,12 @@ impl PassTimer {
         }
         let size = u64::from(MAX_PASSES) * 2 * 8;
         let buffer = |label, usage| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage,
+                mapped_at_creation: false,
+            })
         };
         Some(PassTimer {
             queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {

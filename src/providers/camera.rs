@@ -65,7 +65,8 @@ impl CameraProvider {
         let zoom = self.style.zoom as f32;
         let half_height = if self.style.orthographic {
             // What the perspective camera would show at the target's distance.
-            let fit = if self.style.position.is_some() { distance * tangent_y } else { radius / (FILL * aspect.min(1.0)) };
+            let fit =
+                if self.style.position.is_some() { distance * tangent_y } else { radius / (FILL * aspect.min(1.0)) };
             fit / zoom
         } else {
             tangent_y / zoom

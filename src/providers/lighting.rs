@@ -54,8 +54,7 @@ impl LightingProvider {
                 Shadow::Hard => Some(0.0),
                 Shadow::Soft => Some(light.softness.to_radians() as f32),
             };
-            let shadow =
-                shadow.map(|softness_rad| scene::Shadow { strength: light.strength as f32, softness_rad });
+            let shadow = shadow.map(|softness_rad| scene::Shadow { strength: light.strength as f32, softness_rad });
             lighting.lights.push(scene::Light { place, color, shadow });
         }
         lighting

@@ -30,9 +30,10 @@ impl<'a> ShaderProvider<'a> {
     /// The material of a connector, which matches if either of its atoms does.
     pub fn for_connector(&self, a: &dyn ObjectAttributes, b: &dyn ObjectAttributes) -> Option<usize> {
         let kind = ObjectKind::Connector;
-        let rule = self.style.mapping.iter().find(|rule| {
-            [a, b].iter().any(|atom| rule.selector.matches(kind, &|attribute| atom.attribute(attribute)))
-        });
+        let rule =
+            self.style.mapping.iter().find(|rule| {
+                [a, b].iter().any(|atom| rule.selector.matches(kind, &|attribute| atom.attribute(attribute)))
+            });
         match rule {
             Some(rule) => rule.target,
             None => Some(self.style.basic),

@@ -16,12 +16,7 @@ type Place = (u32, u32, i32, u8);
 pub(super) fn choose(atoms: &[Atom], residues: &[Residue], occupancies: &[f32]) -> Vec<bool> {
     let place = |atom: &Atom| -> Place {
         let residue = &residues[atom.residue as usize];
-        (
-            residue.model,
-            residue.chain,
-            residue.number,
-            residue.insertion_code,
-        )
+        (residue.model, residue.chain, residue.number, residue.insertion_code)
     };
     let mut places: HashMap<Place, Vec<usize>> = HashMap::new();
     for atom in atoms.iter().filter(|atom| atom.alt_loc != 0) {
@@ -40,35 +35,21 @@ pub(super) fn choose(atoms: &[Atom], residues: &[Residue], occupancies: &[f32]) 
 }
 
 /// Decides for the atoms of one place.
-fn choose_in_place(
-    members: &[usize],
-    atoms: &[Atom],
-    residues: &[Residue],
-    occupancies: &[f32],
-    keep: &mut [bool],
-) {
+fn choose_in_place(members: &[usize], atoms: &[Atom], residues: &[Residue], occupancies: &[f32], keep: &mut [bool]) {
     let residue_name = |index: usize| residues[atoms[index].residue as usize].name;
     // Conformers by letter: sum and count of occupancies, first member.
     let mut conformers: Vec<(u8, f64, u32, usize)> = Vec::new();
     for &index in members.iter().filter(|&&index| atoms[index].alt_loc != 0) {
         let letter = atoms[index].alt_loc;
         let occupancy = f64::from(occupancies[index]);
-        match conformers
-            .iter_mut()
-            .find(|conformer| conformer.0 == letter)
-        {
+        match conformers.iter_mut().find(|conformer| conformer.0 == letter) {
             Some((_, sum, count, _)) => (*sum, *count) = (*sum + occupancy, *count + 1),
             None => conformers.push((letter, occupancy, 1, index)),
         }
     }
     let mean = |conformer: &(u8, f64, u32, usize)| conformer.1 / f64::from(conformer.2);
-    let Some(&chosen) = conformers.iter().reduce(|best, other| {
-        if mean(other) > mean(best) {
-            other
-        } else {
-            best
-        }
-    }) else {
+    let Some(&chosen) = conformers.iter().reduce(|best, other| if mean(other) > mean(best) { other } else { best })
+    else {
         return;
     };
     let (chosen_letter, chosen_name) = (chosen.0, residue_name(chosen.3));
@@ -116,12 +97,7 @@ mod tests {
             occupancy,
             residue_name: Name::new(residue.as_bytes()),
             residue_number: 10,
-            ..bare(
-                "C",
-                f64::from(letter) + f64::from(name.as_bytes()[1]) * 3.0,
-                0.0,
-                0.0,
-            )
+            ..bare("C", f64::from(letter) + f64::from(name.as_bytes()[1]) * 3.0, 0.0, 0.0)
         }
     }
 
@@ -129,17 +105,7 @@ mod tests {
         build(atoms)
             .atoms
             .iter()
-            .map(|atom| {
-                format!(
-                    "{}{}",
-                    atom.name,
-                    if atom.alt_loc == 0 {
-                        '-'
-                    } else {
-                        atom.alt_loc as char
-                    }
-                )
-            })
+            .map(|atom| format!("{}{}", atom.name, if atom.alt_loc == 0 { '-' } else { atom.alt_loc as char }))
             .collect()
     }
 
@@ -157,13 +123,7 @@ mod tests {
 
     #[test]
     fn equal_occupancy_draws_the_first() {
-        assert_eq!(
-            drawn(&[
-                alternate("CG", b'A', 0.5, "SER"),
-                alternate("CG", b'B', 0.5, "SER")
-            ]),
-            ["CGA"]
-        );
+        assert_eq!(drawn(&[alternate("CG", b'A', 0.5, "SER"), alternate("CG", b'B', 0.5, "SER")]), ["CGA"]);
     }
 
     #[test]
@@ -180,40 +140,19 @@ mod tests {
 
     #[test]
     fn an_atom_that_only_the_other_conformer_has_stays() {
-        let atoms = [
-            alternate("CG", b'A', 0.6, "SER"),
-            alternate("CG", b'B', 0.4, "SER"),
-            alternate("CE", b'B', 0.4, "SER"),
-        ];
+        let atoms =
+            [alternate("CG", b'A', 0.6, "SER"), alternate("CG", b'B', 0.4, "SER"), alternate("CE", b'B', 0.4, "SER")];
         assert_eq!(drawn(&atoms), ["CGA", "CEB"]);
     }
 
     #[test]
     fn a_blank_letter_competes_by_occupancy() {
-        assert_eq!(
-            drawn(&[
-                alternate("CG", 0, 0.6, "SER"),
-                alternate("CG", b'B', 0.4, "SER")
-            ]),
-            ["CG-"]
-        );
-        assert_eq!(
-            drawn(&[
-                alternate("CG", 0, 0.4, "SER"),
-                alternate("CG", b'B', 0.6, "SER")
-            ]),
-            ["CGB"]
-        );
+        assert_eq!(drawn(&[alternate("CG", 0, 0.6, "SER"), alternate("CG", b'B', 0.4, "SER")]), ["CG-"]);
+        assert_eq!(drawn(&[alternate("CG", 0, 0.4, "SER"), alternate("CG", b'B', 0.6, "SER")]), ["CGB"]);
     }
 
     #[test]
     fn equal_names_without_letters_all_stay() {
-        assert_eq!(
-            drawn(&[
-                alternate("CG", 0, 0.6, "SER"),
-                alternate("CG", 0, 0.4, "SER")
-            ]),
-            ["CG-", "CG-"]
-        );
+        assert_eq!(drawn(&[alternate("CG", 0, 0.6, "SER"), alternate("CG", 0, 0.4, "SER")]), ["CG-", "CG-"]);
     }
 }

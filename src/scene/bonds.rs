@@ -1,7 +1,7 @@
 //! Bonds: those that the file names, and those that distances tell.
 //!
 //! Two atoms are bonded by distance if they are nearer than the sum of their covalent radii plus 0.45 angstrom and farther
-//! apart than 0.4 [the rule and both numbers of Open Babel, O'Boyle et al., J. Cheminform. 2011, 3, 33]. Exceptions:
+//! apart than 0.4 [rule and both numbers: Open Babel, `OBMol::ConnectTheDots` in src/mol.cpp]. Exceptions:
 //! - A hydrogen has one bond, to its nearest heavy atom (else to its nearest hydrogen).
 //! - Two metals never bond; a metal and a non-metal do, with the same tolerance: Co-Cl at 2.4 angstrom is a bond.
 //! - Alkali metals and calcium to radium bond only if the file says so ([`Element::is_ionic`]): rock salt has no bonds.
@@ -26,6 +26,8 @@ const MIN_DISTANCE: f32 = 0.4;
 /// A file's bond may be this many times as long as one by distance. Ours: coarse beads 5 angstrom apart pass, a bond
 /// that leaves a crystal's cell and should enter it again on the other side does not.
 const LONGEST_FILE_BOND: f32 = 3.0;
+/// A file's bond shorter than this, in angstrom, has no direction to draw it in.
+const SHORTEST_FILE_BOND: f32 = 0.05;
 /// Bonds by distance that an atom keeps.
 const MAX_BONDS: u8 = 8;
 /// The same for a metal.
@@ -57,32 +59,20 @@ struct Candidate {
 /// Real PDB files list the bonds of ligands, not those of amino acids and nucleotides. So an atom counts as described if
 /// the file names a bond of it and its residue is neither amino acid, nucleotide nor water; two described atoms get no bond
 /// by distance, all other pairs may.
-pub(super) fn find(
-    atoms: &[Atom],
-    residues: &[Residue],
-    file_bonds: &[FileBond],
-    report: &mut Report,
-) -> Vec<Bond> {
+pub(super) fn find(atoms: &[Atom], residues: &[Residue], file_bonds: &[FileBond], report: &mut Report) -> Vec<Bond> {
     let mut bonds = accept_file_bonds(atoms, file_bonds, report);
     let context = Context::new(atoms, residues, &bonds);
     let mut search = Search::new(atoms, &context);
     let mut start = 0;
     while start < atoms.len() {
         let model = residues[atoms[start].residue as usize].model;
-        let length = atoms[start..]
-            .iter()
-            .take_while(|atom| residues[atom.residue as usize].model == model)
-            .count();
+        let length = atoms[start..].iter().take_while(|atom| residues[atom.residue as usize].model == model).count();
         search.add_model(start..start + length);
         start += length;
     }
     let num_cut = search.cut.iter().filter(|&&cut| cut).count();
     report.note_many(NoteKind::Crowded, num_cut as u32, String::new);
-    bonds.extend(
-        filter(atoms, search.found)
-            .into_iter()
-            .map(|Candidate { a, b, .. }| Bond { a, b, order: 1 }),
-    );
+    bonds.extend(filter(atoms, search.found).into_iter().map(|Candidate { a, b, .. }| Bond { a, b, order: 1 }));
     // A bond found twice keeps its highest order: the file's.
     bonds.sort_unstable_by_key(|bond| (bond.a, bond.b, std::cmp::Reverse(bond.order)));
     bonds.dedup_by_key(|bond| (bond.a, bond.b));
@@ -102,17 +92,12 @@ fn accept_file_bonds(atoms: &[Atom], file_bonds: &[FileBond], report: &mut Repor
             continue;
         }
         let length = atom_a.position.distance(atom_b.position);
-        if length > LONGEST_FILE_BOND * longest(atom_a.element, atom_b.element) {
-            report.note(NoteKind::LongBond, None, || {
-                format!("{}-{}, {length:.1} angstrom", atom_a.name, atom_b.name)
-            });
+        let longest = LONGEST_FILE_BOND * longest(atom_a.element, atom_b.element);
+        if !(SHORTEST_FILE_BOND..=longest).contains(&length) {
+            report.note(NoteKind::OddBond, None, || format!("{}-{}, {length:.1} angstrom", atom_a.name, atom_b.name));
             continue;
         }
-        bonds.push(Bond {
-            a,
-            b,
-            order: order.clamp(1, 3),
-        });
+        bonds.push(Bond { a, b, order: order.clamp(1, 3) });
     }
     bonds
 }
@@ -132,31 +117,13 @@ struct Context<'a> {
 
 impl<'a> Context<'a> {
     fn new(atoms: &'a [Atom], residues: &'a [Residue], file_bonds: &[Bond]) -> Self {
-        let mut is_described = vec![
-            false;
-            if file_bonds.is_empty() {
-                0
-            } else {
-                atoms.len()
-            }
-        ];
-        for index in file_bonds
-            .iter()
-            .flat_map(|bond| [bond.a as usize, bond.b as usize])
-        {
+        let mut is_described = vec![false; if file_bonds.is_empty() { 0 } else { atoms.len() }];
+        for index in file_bonds.iter().flat_map(|bond| [bond.a as usize, bond.b as usize]) {
             let name = residues[atoms[index].residue as usize].name;
             is_described[index] = !is_polymer_residue(name.as_str()) && !is_water(name.as_str());
         }
-        let is_water = residues
-            .iter()
-            .map(|residue| is_water(residue.name.as_str()))
-            .collect();
-        Self {
-            atoms,
-            residues,
-            is_water,
-            is_described,
-        }
+        let is_water = residues.iter().map(|residue| is_water(residue.name.as_str())).collect();
+        Self { atoms, residues, is_water, is_described }
     }
 
     /// Whether a bond by distance may join two atoms.
@@ -172,8 +139,7 @@ impl<'a> Context<'a> {
         {
             return false;
         }
-        let exclusive =
-            atom_a.alt_loc != 0 && atom_b.alt_loc != 0 && atom_a.alt_loc != atom_b.alt_loc;
+        let exclusive = atom_a.alt_loc != 0 && atom_b.alt_loc != 0 && atom_a.alt_loc != atom_b.alt_loc;
         !exclusive || self.is_chain_link(atom_a, atom_b)
     }
 
@@ -181,10 +147,7 @@ impl<'a> Context<'a> {
     fn is_chain_link(&self, a: &Atom, b: &Atom) -> bool {
         let names = [a.name.as_str(), b.name.as_str()];
         let linked = [["C", "N"], ["N", "C"], ["O3'", "P"], ["P", "O3'"]].contains(&names);
-        let (a, b) = (
-            &self.residues[a.residue as usize],
-            &self.residues[b.residue as usize],
-        );
+        let (a, b) = (&self.residues[a.residue as usize], &self.residues[b.residue as usize]);
         linked && a.chain == b.chain && a.number.abs_diff(b.number) <= 1 && a != b
     }
 }
@@ -202,35 +165,16 @@ struct Search<'a> {
 
 impl<'a> Search<'a> {
     fn new(atoms: &'a [Atom], context: &'a Context<'a>) -> Self {
-        Self {
-            atoms,
-            context,
-            found: Vec::new(),
-            counts: vec![0; atoms.len()],
-            cut: vec![false; atoms.len()],
-        }
+        Self { atoms, context, found: Vec::new(), counts: vec![0; atoms.len()], cut: vec![false; atoms.len()] }
     }
 
     /// Searches among the atoms of one model.
     fn add_model(&mut self, range: Range<usize>) {
-        let Self {
-            atoms,
-            context,
-            found,
-            counts,
-            cut,
-        } = self;
-        let points = range
-            .clone()
-            .zip(&atoms[range])
-            .filter(|(_, atom)| !atom.element.is_ionic());
+        let Self { atoms, context, found, counts, cut } = self;
+        let points = range.clone().zip(&atoms[range]).filter(|(_, atom)| !atom.element.is_ionic());
         let (mut metal, mut other) = (0.0_f32, 0.0_f32);
         for (_, atom) in points.clone() {
-            let largest = if atom.element.is_metal() {
-                &mut metal
-            } else {
-                &mut other
-            };
+            let largest = if atom.element.is_metal() { &mut metal } else { &mut other };
             *largest = largest.max(atom.element.covalent_radius());
         }
         if other == 0.0 {
@@ -239,10 +183,7 @@ impl<'a> Search<'a> {
         let longest_bond = other + metal.max(other) + TOLERANCE;
         let within = MIN_DISTANCE * MIN_DISTANCE..=longest_bond * longest_bond;
         let cut = Cell::from_mut(cut.as_mut_slice()).as_slice_of_cells();
-        let grid = Grid::new(
-            points.map(|(index, atom)| (index as u32, atom.position)),
-            longest_bond,
-        );
+        let grid = Grid::new(points.map(|(index, atom)| (index as u32, atom.position)), longest_bond);
         grid.pairs(
             |a, b, distance_squared| {
                 if !within.contains(&distance_squared) {
@@ -254,20 +195,13 @@ impl<'a> Search<'a> {
                 if distance_squared > limit * limit || metals || !context.allows(a, b) {
                     return;
                 }
-                if let Some(&full) = [a, b]
-                    .iter()
-                    .find(|&&end| counts[end as usize] >= MAX_CANDIDATES)
-                {
+                if let Some(&full) = [a, b].iter().find(|&&end| counts[end as usize] >= MAX_CANDIDATES) {
                     cut[full as usize].set(true);
                     return;
                 }
                 counts[a as usize] += 1;
                 counts[b as usize] += 1;
-                found.push(Candidate {
-                    a: a.min(b),
-                    b: a.max(b),
-                    distance_squared,
-                });
+                found.push(Candidate { a: a.min(b), b: a.max(b), distance_squared });
             },
             |index| cut[index as usize].set(true),
         );
@@ -289,9 +223,7 @@ fn filter(atoms: &[Atom], mut candidates: Vec<Candidate>) -> Vec<Candidate> {
             let better = *chosen == NONE || {
                 let old = candidates[*chosen as usize];
                 let old_partner = if old.a == hydrogen { old.b } else { old.a };
-                let rank = |partner: u32, candidate: &Candidate| {
-                    (is_hydrogen(partner), candidate.distance_squared)
-                };
+                let rank = |partner: u32, candidate: &Candidate| (is_hydrogen(partner), candidate.distance_squared);
                 rank(partner, candidate) < rank(old_partner, &old)
             };
             if better {
@@ -301,35 +233,24 @@ fn filter(atoms: &[Atom], mut candidates: Vec<Candidate>) -> Vec<Candidate> {
     }
     let mut number = 0;
     candidates.retain(|candidate| {
-        let keep = [candidate.a, candidate.b]
-            .iter()
-            .all(|&end| !is_hydrogen(end) || choice[end as usize] == number);
+        let keep = [candidate.a, candidate.b].iter().all(|&end| !is_hydrogen(end) || choice[end as usize] == number);
         number += 1;
         keep
     });
 
     let limit = |index: u32| {
-        if element(index).is_metal() {
-            MAX_BONDS_METAL
-        } else {
-            MAX_BONDS
-        }
+        if element(index).is_metal() { MAX_BONDS_METAL } else { MAX_BONDS }
     };
     let mut degrees = vec![0_u8; atoms.len()];
     let mut crowded = false;
-    for index in candidates
-        .iter()
-        .flat_map(|candidate| [candidate.a, candidate.b])
-    {
+    for index in candidates.iter().flat_map(|candidate| [candidate.a, candidate.b]) {
         degrees[index as usize] += 1;
         crowded |= degrees[index as usize] > limit(index);
     }
     if crowded {
         degrees.fill(0);
         candidates.sort_unstable_by(|x, y| {
-            x.distance_squared
-                .total_cmp(&y.distance_squared)
-                .then((x.a, x.b).cmp(&(y.a, y.b)))
+            x.distance_squared.total_cmp(&y.distance_squared).then((x.a, x.b).cmp(&(y.a, y.b)))
         });
         candidates.retain(|&Candidate { a, b, .. }| {
             let keep = degrees[a as usize] < limit(a) && degrees[b as usize] < limit(b);

@@ -76,11 +76,7 @@ impl MoleculeBuilder {
             insertion_code: atom.insertion_code,
             is_hetero: atom.is_hetero,
         };
-        if self
-            .residues
-            .last()
-            .is_none_or(|last| !same_residue(last, &residue))
-        {
+        if self.residues.last().is_none_or(|last| !same_residue(last, &residue)) {
             self.residues.push(residue);
         }
         let index = self.atoms.len() as u32;
@@ -100,11 +96,7 @@ impl MoleculeBuilder {
     /// Makes the molecule, or `None` if there is no atom. `file_bonds` may hold duplicates and any direction.
     pub fn finish(mut self, file_bonds: &[FileBond], report: &mut Report) -> Option<Molecule> {
         let new_index = self.drop_alternates(report);
-        let bounds = self
-            .positions
-            .iter()
-            .map(|&p| (p, p))
-            .reduce(|(low, high), (p, _)| (low.min(p), high.max(p)));
+        let bounds = self.positions.iter().map(|&p| (p, p)).reduce(|(low, high), (p, _)| (low.min(p), high.max(p)));
         let (low, high) = bounds?;
         let origin = (low + high) * 0.5;
         for (atom, &position) in self.atoms.iter_mut().zip(&self.positions) {
@@ -112,9 +104,7 @@ impl MoleculeBuilder {
         }
         let rounding = (high - low).max_element() * f64::from(f32::EPSILON) * 0.25;
         if rounding > VISIBLE_ROUNDING {
-            report.note(NoteKind::CoarsePositions, None, || {
-                format!("to about {rounding:.2e} angstrom")
-            });
+            report.note(NoteKind::CoarsePositions, None, || format!("to about {rounding:.2e} angstrom"));
         }
         // Give back what growing the lists left over before the bond search takes memory.
         drop((self.positions, self.occupancies, self.chain_index));
@@ -122,31 +112,14 @@ impl MoleculeBuilder {
         self.residues.shrink_to_fit();
         let kept_bond = |bond: &FileBond| {
             let map = |index: u32| {
-                new_index.as_ref().map_or(Some(index), |new_index| {
-                    new_index.get(index as usize).copied().flatten()
-                })
+                new_index.as_ref().map_or(Some(index), |new_index| new_index.get(index as usize).copied().flatten())
             };
-            Some(FileBond {
-                a: map(bond.a)?,
-                b: map(bond.b)?,
-                order: bond.order,
-            })
+            Some(FileBond { a: map(bond.a)?, b: map(bond.b)?, order: bond.order })
         };
         let file_bonds: Vec<FileBond> = file_bonds.iter().filter_map(kept_bond).collect();
         let bonds = bonds::find(&self.atoms, &self.residues, &file_bonds, report);
-        let sphere = bounding_sphere(
-            self.atoms
-                .iter()
-                .map(|atom| (atom.position, atom.element.vdw_radius())),
-        );
-        Some(Molecule {
-            atoms: self.atoms,
-            residues: self.residues,
-            chains: self.chains,
-            bonds,
-            origin,
-            sphere,
-        })
+        let sphere = bounding_sphere(self.atoms.iter().map(|atom| (atom.position, atom.element.vdw_radius())));
+        Some(Molecule { atoms: self.atoms, residues: self.residues, chains: self.chains, bonds, origin, sphere })
     }
 
     /// Drops all but one alternate location and the residues left without atoms; returns where each atom went, if any moved.
@@ -163,10 +136,7 @@ impl MoleculeBuilder {
             }
             let mut atom = self.atoms[old];
             let residue = self.residues[atom.residue as usize];
-            if residues
-                .last()
-                .is_none_or(|last| !same_residue(last, &residue))
-            {
+            if residues.last().is_none_or(|last| !same_residue(last, &residue)) {
                 residues.push(residue);
             }
             atom.residue = residues.len() as u32 - 1;
@@ -175,11 +145,7 @@ impl MoleculeBuilder {
             new_index[old] = Some(count as u32);
             count += 1;
         }
-        report.note_many(
-            NoteKind::AlternateLocation,
-            (keep.len() - count) as u32,
-            String::new,
-        );
+        report.note_many(NoteKind::AlternateLocation, (keep.len() - count) as u32, String::new);
         self.atoms.truncate(count);
         self.positions.truncate(count);
         self.residues = residues;
@@ -209,10 +175,7 @@ impl MoleculeBuilder {
 
 /// Whether two neighbours in the file belong together; a `HETATM` within a residue does not split it.
 fn same_residue(a: &Residue, b: &Residue) -> bool {
-    Residue {
-        is_hetero: b.is_hetero,
-        ..*a
-    } == *b
+    Residue { is_hetero: b.is_hetero, ..*a } == *b
 }
 
 #[cfg(test)]
@@ -242,17 +205,12 @@ pub(super) mod tests {
         atoms.iter().for_each(|atom| {
             builder.push(atom);
         });
-        builder
-            .finish(&[], &mut Report::default())
-            .expect("at least one atom")
+        builder.finish(&[], &mut Report::default()).expect("at least one atom")
     }
 
     #[test]
     fn nothing_gives_no_molecule() {
-        assert_eq!(
-            MoleculeBuilder::default().finish(&[], &mut Report::default()),
-            None
-        );
+        assert_eq!(MoleculeBuilder::default().finish(&[], &mut Report::default()), None);
     }
 
     #[test]
@@ -278,12 +236,7 @@ pub(super) mod tests {
     #[test]
     fn chains_are_listed_once_and_residues_follow_the_file() {
         let mut atoms = [bare("C", 0.0, 0.0, 0.0); 4];
-        (
-            atoms[0].chain,
-            atoms[1].chain,
-            atoms[2].chain,
-            atoms[3].chain,
-        ) = (b"A", b"B", b"A", b"A");
+        (atoms[0].chain, atoms[1].chain, atoms[2].chain, atoms[3].chain) = (b"A", b"B", b"A", b"A");
         atoms[3].is_hetero = true;
         let molecule = build(&atoms);
         assert_eq!(molecule.chains, ["A", "B"]);

@@ -33,10 +33,6 @@ impl Camera {
         let size = Vec2::new(size_px[0] as f32, size_px[1] as f32);
         let ndc = Vec2::new(2.0, -2.0) * position_px / size + Vec2::new(-1.0, 1.0);
         let plane = ndc * self.half_extent;
-        if self.orthographic {
-            (plane.extend(0.0), Vec3::NEG_Z)
-        } else {
-            (Vec3::ZERO, plane.extend(-1.0))
-        }
+        if self.orthographic { (plane.extend(0.0), Vec3::NEG_Z) } else { (Vec3::ZERO, plane.extend(-1.0)) }
     }
 }

@@ -38,20 +38,14 @@ impl Element {
 
     /// The element of an atomic number; anything outside 1 to 118 is unknown.
     pub const fn from_number(number: u8) -> Self {
-        if number <= Self::MAX_NUMBER {
-            Self(number)
-        } else {
-            Self::UNKNOWN
-        }
+        if number <= Self::MAX_NUMBER { Self(number) } else { Self::UNKNOWN }
     }
 
     /// The element of a symbol, in any case, without spaces around it: `b"CL"` is chlorine. `D` and `T` are hydrogen.
     pub fn from_symbol(symbol: &[u8]) -> Option<Self> {
         match symbol {
             [a] => lookup(a.to_ascii_uppercase(), 0),
-            [a, b] if b.is_ascii_alphabetic() => {
-                lookup(a.to_ascii_uppercase(), b.to_ascii_lowercase())
-            }
+            [a, b] if b.is_ascii_alphabetic() => lookup(a.to_ascii_uppercase(), b.to_ascii_lowercase()),
             _ => None,
         }
     }
@@ -110,11 +104,7 @@ const LOOKUP: [[u8; 27]; 26] = {
     let mut number = 1;
     while number < TABLE.len() {
         let symbol = TABLE[number].symbol.as_bytes();
-        let column = if symbol.len() > 1 {
-            symbol[1] - b'a' + 1
-        } else {
-            0
-        };
+        let column = if symbol.len() > 1 { symbol[1] - b'a' + 1 } else { 0 };
         table[(symbol[0] - b'A') as usize][column as usize] = number as u8;
         number += 1;
     }
@@ -126,11 +116,7 @@ const LOOKUP: [[u8; 27]; 26] = {
 /// Finds a symbol given as an upper-case letter and a lower-case one, or 0 for none.
 fn lookup(first: u8, second: u8) -> Option<Element> {
     let row = LOOKUP.get(first.checked_sub(b'A')? as usize)?;
-    let column = if second == 0 {
-        0
-    } else {
-        second.checked_sub(b'a')? + 1
-    };
+    let column = if second == 0 { 0 } else { second.checked_sub(b'a')? + 1 };
     match row.get(column as usize) {
         Some(&number) if number != 0 => Some(Element(number)),
         _ => None,
@@ -145,16 +131,8 @@ mod tests {
     fn every_symbol_finds_its_own_row_in_any_case() {
         for number in 1..=Element::MAX_NUMBER {
             let symbol = Element::from_number(number).symbol();
-            for text in [
-                symbol.to_string(),
-                symbol.to_uppercase(),
-                symbol.to_lowercase(),
-            ] {
-                assert_eq!(
-                    Element::from_symbol(text.as_bytes()),
-                    Some(Element(number)),
-                    "{text}"
-                );
+            for text in [symbol.to_string(), symbol.to_uppercase(), symbol.to_lowercase()] {
+                assert_eq!(Element::from_symbol(text.as_bytes()), Some(Element(number)), "{text}");
             }
         }
     }
@@ -171,11 +149,7 @@ mod tests {
     fn every_row_has_sane_radii() {
         for number in 0..=Element::MAX_NUMBER {
             let info = Element::from_number(number).info();
-            assert!(
-                (0.25..=2.65).contains(&info.covalent_radius),
-                "{}",
-                info.symbol
-            );
+            assert!((0.25..=2.65).contains(&info.covalent_radius), "{}", info.symbol);
             assert!((1.05..=3.5).contains(&info.vdw_radius), "{}", info.symbol);
             assert!(!info.name.is_empty());
         }
@@ -185,14 +159,8 @@ mod tests {
     #[test]
     fn well_known_numbers_are_in_their_rows() {
         let carbon = Element::CARBON.info();
-        assert_eq!(
-            (carbon.covalent_radius, carbon.vdw_radius, carbon.color),
-            (0.76, 1.70, [144, 144, 144])
-        );
+        assert_eq!((carbon.covalent_radius, carbon.vdw_radius, carbon.color), (0.76, 1.70, [144, 144, 144]));
         let gold = Element::from_number(79).info();
-        assert_eq!(
-            (gold.symbol, gold.vdw_radius, gold.is_metal),
-            ("Au", 1.66, true)
-        );
+        assert_eq!((gold.symbol, gold.vdw_radius, gold.is_metal), ("Au", 1.66, true));
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Sources, by column:
 //! - covalent radius in angstrom: Cordero et al., Dalton Trans. 2008, 2832, doi:10.1039/b801115j (carbon sp3; Mn, Fe, Co low spin).
-//! - van der Waals radius in angstrom: Mantina et al., J. Phys. Chem. A 2009, 113, 5806, doi:10.1021/jp8111556, table 12, for the
+//! - van der Waals radius in angstrom: Mantina et al., J. Phys. Chem. A 2009, 113, 5806, doi:10.1021/jp8111556, for the
 //!   44 main-group elements; Bondi, J. Phys. Chem. 1964, 68, 441 for Ni, Cu, Zn, Pd, Ag, Cd, Pt, Au, Hg and U; Alvarez,
 //!   Dalton Trans. 2013, 42, 8617, doi:10.1039/c3dt50599e for the rest.
 //! - colour, sRGB: Jmol's table, jmol.sourceforge.net/jscolors.
@@ -20,14 +20,7 @@ const fn row(
     color: [u8; 3],
     is_metal: bool,
 ) -> ElementInfo {
-    ElementInfo {
-        symbol,
-        name,
-        covalent_radius,
-        vdw_radius,
-        color,
-        is_metal,
-    }
+    ElementInfo { symbol, name, covalent_radius, vdw_radius, color, is_metal }
 }
 
 /// Row 0 is the unknown element: carbon's radii, so that it is drawn and bonded like one, and a pink nobody else has.

@@ -7,9 +7,7 @@ use std::path::Path;
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// There is no such file.
-    #[error(
-        "{file}: no such file; check the spelling, or give the name of a shipped molecule such as c60"
-    )]
+    #[error("{file}: no such file; check the spelling, or give the name of a shipped molecule such as c60")]
     NotFound {
         /// The file as the caller named it.
         file: String,

@@ -8,7 +8,7 @@ use glam::Vec3;
 
 /// Points that one cell may hold before its runs are cut. A cell of bonds is at most 4 angstrom wide, and diamond, the
 /// densest matter, fills it with 11 atoms; overlaid conformers of one molecule may come to more.
-const CELL_LIMIT: usize = 64;
+const CELL_LIMIT: usize = 32;
 /// Bits of a cell's index along each axis.
 const BITS: u32 = 21;
 /// Cell indices stay one off both ends, so that neighbours never run over into the next row.
@@ -25,35 +25,25 @@ pub(super) struct Grid {
 impl Grid {
     /// Sorts points into cells of the given width. Positions must be finite, widths positive.
     pub(super) fn new(points: impl Iterator<Item = (u32, Vec3)> + Clone, cell: f32) -> Self {
-        let low = points
-            .clone()
-            .fold(Vec3::splat(f32::INFINITY), |low, (_, point)| low.min(point));
+        let low = points.clone().fold(Vec3::splat(f32::INFINITY), |low, (_, point)| low.min(point));
         // A float too large for u32 becomes the largest u32: far away, cells merge, and the limit takes over.
         let index = |value: f32| u64::from(((value / cell) as u32).saturating_add(1).min(LAST));
         let key = |point: Vec3| {
             let offset = point - low;
             index(offset.z) << (2 * BITS) | index(offset.y) << BITS | index(offset.x)
         };
-        let mut sorted: Vec<(u64, u32, Vec3)> =
-            points.map(|(id, point)| (key(point), id, point)).collect();
+        let mut sorted: Vec<(u64, u32, Vec3)> = points.map(|(id, point)| (key(point), id, point)).collect();
         sorted.sort_unstable_by_key(|&(key, id, _)| (key, id));
         let positions = sorted.iter().map(|&(_, _, position)| position).collect();
-        Self {
-            keys: sorted.into_iter().map(|(key, id, _)| (key, id)).collect(),
-            positions,
-        }
+        Self { keys: sorted.into_iter().map(|(key, id, _)| (key, id)).collect(), positions }
     }
 
     /// Calls `visit` with both points and their squared distance, once for each pair nearer than a cell's width and for
     /// some that are farther. Calls `cut` for points whose neighbours were too many to look at all.
     pub(super) fn pairs(&self, mut visit: impl FnMut(u32, u32, f32), mut cut: impl FnMut(u32)) {
         // Rows after the point's own: (y + 1, z), (y - 1, z + 1), (y, z + 1), (y + 1, z + 1).
-        let row_offsets: [u64; 4] = [
-            1 << BITS,
-            (1 << (2 * BITS)) - (1 << BITS),
-            1 << (2 * BITS),
-            (1 << (2 * BITS)) + (1 << BITS),
-        ];
+        let row_offsets: [u64; 4] =
+            [1 << BITS, (1 << (2 * BITS)) - (1 << BITS), 1 << (2 * BITS), (1 << (2 * BITS)) + (1 << BITS)];
         let mut row_starts = [0; 4];
         for (i, (&(key, id), &position)) in self.keys.iter().zip(&self.positions).enumerate() {
             let mut scan = |start: usize, last_key: u64, limit: usize| {
@@ -65,21 +55,13 @@ impl Grid {
                     }
                     visit(id, other_id, position.distance_squared(self.positions[j]));
                 }
-                if self
-                    .keys
-                    .get(end)
-                    .is_some_and(|&(other_key, _)| other_key <= last_key)
-                {
+                if self.keys.get(end).is_some_and(|&(other_key, _)| other_key <= last_key) {
                     cut(id);
                 }
             };
             scan(i + 1, key + 1, 2 * CELL_LIMIT);
             for (start, offset) in row_starts.iter_mut().zip(row_offsets) {
-                while self
-                    .keys
-                    .get(*start)
-                    .is_some_and(|&(other_key, _)| other_key < key + offset - 1)
-                {
+                while self.keys.get(*start).is_some_and(|&(other_key, _)| other_key < key + offset - 1) {
                     *start += 1;
                 }
                 scan(*start, key + offset + 1, 3 * CELL_LIMIT);
@@ -96,14 +78,10 @@ mod tests {
     fn the_grid_finds_the_pairs_of_brute_force() {
         let mut state = 7_u64;
         let mut next = || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
             (state >> 40) as f32 / (1 << 24) as f32 * 12.0 - 6.0
         };
-        let points: Vec<Vec3> = (0..400)
-            .map(|_| Vec3::new(next(), next(), next()))
-            .collect();
+        let points: Vec<Vec3> = (0..400).map(|_| Vec3::new(next(), next(), next())).collect();
         let near = |a: Vec3, b: Vec3| a.distance_squared(b) <= 1.5 * 1.5;
         let mut expected = Vec::new();
         for a in 0..points.len() {
@@ -114,13 +92,7 @@ mod tests {
             }
         }
         let mut found = Vec::new();
-        let grid = Grid::new(
-            points
-                .iter()
-                .enumerate()
-                .map(|(id, &point)| (id as u32, point)),
-            1.5,
-        );
+        let grid = Grid::new(points.iter().enumerate().map(|(id, &point)| (id as u32, point)), 1.5);
         grid.pairs(
             |a, b, squared| {
                 if squared <= 1.5 * 1.5 {
@@ -138,21 +110,13 @@ mod tests {
         let grid = Grid::new((0..10_000).map(|id| (id, Vec3::ONE)), 2.0);
         let (mut visited, mut cut) = (0_usize, 0);
         grid.pairs(|_, _, _| visited += 1, |_| cut += 1);
-        assert!(
-            visited <= 10_000 * 2 * CELL_LIMIT && cut > 9_000,
-            "{visited} {cut}"
-        );
+        assert!(visited <= 10_000 * 2 * CELL_LIMIT && cut > 9_000, "{visited} {cut}");
     }
 
     #[test]
     fn points_at_the_ends_of_space_do_not_overflow() {
         let ends = [Vec3::splat(-3e38), Vec3::splat(3e38), Vec3::ZERO];
-        let grid = Grid::new(
-            ends.iter()
-                .enumerate()
-                .map(|(id, &point)| (id as u32, point)),
-            0.5,
-        );
+        let grid = Grid::new(ends.iter().enumerate().map(|(id, &point)| (id as u32, point)), 0.5);
         grid.pairs(|_, _, _| {}, |_| {});
     }
 }

@@ -8,24 +8,21 @@ use super::element::Element;
 
 /// Two-letter elements that a name may start with when the columns say so; others (`HE`, `CE`, `AC`) are nearly always labels.
 const LIKELY_TWO_LETTER: &[&[u8; 2]] = &[
-    b"CL", b"BR", b"FE", b"ZN", b"MG", b"MN", b"CO", b"NI", b"CU", b"NA", b"CA", b"CD", b"SE",
-    b"SI", b"LI", b"AL", b"HG", b"PT", b"AU", b"AG", b"AS", b"MO", b"CR", b"TI", b"RU", b"RH",
-    b"PD", b"SR", b"BA", b"RB", b"CS", b"PB", b"SN", b"SB", b"GA", b"ZR", b"IR", b"XE",
+    b"CL", b"BR", b"FE", b"ZN", b"MG", b"MN", b"CO", b"NI", b"CU", b"NA", b"CA", b"CD", b"SE", b"SI", b"LI", b"AL",
+    b"HG", b"PT", b"AU", b"AG", b"AS", b"MO", b"CR", b"TI", b"RU", b"RH", b"PD", b"SR", b"BA", b"RB", b"CS", b"PB",
+    b"SN", b"SB", b"GA", b"ZR", b"IR", b"XE",
 ];
 
 /// Residues made of H, C, N, O, P and S alone, whatever their names look like.
 const POLYMER: &[&str] = &[
-    "ALA", "ARG", "ASN", "ASP", "CYS", "GLN", "GLU", "GLY", "HIS", "ILE", "LEU", "LYS", "MET",
-    "PHE", "PRO", "SER", "THR", "TRP", "TYR", "VAL", "ASX", "GLX", "HID", "HIE", "HIP", "HSD",
-    "HSE", "HSP", "CYX", "A", "C", "G", "T", "U", "I", "DA", "DC", "DG", "DT", "DU", "DI", "ADE",
-    "CYT", "GUA", "THY", "URA", "N",
+    "ALA", "ARG", "ASN", "ASP", "CYS", "GLN", "GLU", "GLY", "HIS", "ILE", "LEU", "LYS", "MET", "PHE", "PRO", "SER",
+    "THR", "TRP", "TYR", "VAL", "ASX", "GLX", "HID", "HIE", "HIP", "HSD", "HSE", "HSP", "CYX", "A", "C", "G", "T", "U",
+    "I", "DA", "DC", "DG", "DT", "DU", "DI", "ADE", "CYT", "GUA", "THY", "URA", "N",
 ];
 
 /// Names that programs give to water.
-const WATER: &[&str] = &[
-    "HOH", "WAT", "DOD", "H2O", "SOL", "TIP", "TIP3", "TIP4", "TIP5", "TP3", "TP4", "T3P", "T4P",
-    "SPC", "SPCE",
-];
+const WATER: &[&str] =
+    &["HOH", "WAT", "DOD", "H2O", "SOL", "TIP", "TIP3", "TIP4", "TIP5", "TP3", "TP4", "T3P", "T4P", "SPC", "SPCE"];
 
 /// Whether a residue is an amino acid or nucleotide that needs no `CONECT` records.
 pub(super) fn is_polymer_residue(name: &str) -> bool {
@@ -75,28 +72,14 @@ fn from_columns(columns: [u8; 4]) -> Element {
     letters()
         .next()
         .and_then(|letter| one_letter(letter, b"HCNOPSFIBKVWYUD"))
-        .or_else(|| {
-            letters()
-                .nth(1)
-                .and_then(|letter| one_letter(letter, b"HCNOPS"))
-        })
-        .or_else(|| {
-            if starts_left {
-                Element::from_symbol(&[a, b])
-            } else {
-                None
-            }
-        })
+        .or_else(|| letters().nth(1).and_then(|letter| one_letter(letter, b"HCNOPS")))
+        .or_else(|| if starts_left { Element::from_symbol(&[a, b]) } else { None })
         .unwrap_or_default()
 }
 
 /// The element of one letter if it is among those allowed.
 fn one_letter(letter: u8, allowed: &[u8]) -> Option<Element> {
-    if allowed.contains(&letter) {
-        Element::from_symbol(&[letter])
-    } else {
-        None
-    }
+    if allowed.contains(&letter) { Element::from_symbol(&[letter]) } else { None }
 }
 
 /// The element of the first column of an XYZ file: a symbol, a symbol with a label (`C1`, `Fe2+`, `H_a`) or an atomic number.
@@ -104,15 +87,10 @@ fn one_letter(letter: u8, allowed: &[u8]) -> Option<Element> {
 /// Returns the unknown element for dummies (`X`, `Bq`) and for words that no element starts.
 pub fn from_xyz_symbol(token: &[u8]) -> Element {
     if token.iter().all(u8::is_ascii_digit) {
-        let number = std::str::from_utf8(token)
-            .ok()
-            .and_then(|digits| digits.parse().ok());
+        let number = std::str::from_utf8(token).ok().and_then(|digits| digits.parse().ok());
         return Element::from_number(number.unwrap_or(0));
     }
-    let length = token
-        .iter()
-        .take_while(|byte| byte.is_ascii_alphabetic())
-        .count();
+    let length = token.iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
     Element::from_symbol(&token[..length]).unwrap_or_default()
 }
 
@@ -137,9 +115,7 @@ mod tests {
 
     #[test]
     fn hydrogens_are_no_mercury_and_no_helium() {
-        for name in [
-            "HG11", "1HB ", " HE2", "HE2 ", "HH12", " HG ", "HG  ", "2HG1", "HO5'",
-        ] {
+        for name in ["HG11", "1HB ", " HE2", "HE2 ", "HH12", " HG ", "HG  ", "2HG1", "HO5'"] {
             assert_eq!(pdb(name, "ARG"), "H", "{name}");
         }
         assert_eq!(pdb("HO5'", "LIG"), "H");
@@ -168,21 +144,10 @@ mod tests {
 
     #[test]
     fn xyz_takes_labels_and_numbers() {
-        for (token, symbol) in [
-            ("C1", "C"),
-            ("6", "C"),
-            ("Fe2+", "Fe"),
-            ("H_a", "H"),
-            ("X", "X"),
-            ("Foo", "X"),
-            ("D", "H"),
-            ("999", "X"),
-        ] {
-            assert_eq!(
-                from_xyz_symbol(token.as_bytes()).symbol(),
-                symbol,
-                "{token}"
-            );
+        for (token, symbol) in
+            [("C1", "C"), ("6", "C"), ("Fe2+", "Fe"), ("H_a", "H"), ("X", "X"), ("Foo", "X"), ("D", "H"), ("999", "X")]
+        {
+            assert_eq!(from_xyz_symbol(token.as_bytes()).symbol(), symbol, "{token}");
         }
         assert_eq!(from_xyz_symbol(b"0"), Element::UNKNOWN);
         assert_eq!(from_xyz_symbol(b""), Element::UNKNOWN);

@@ -71,7 +71,10 @@ impl Image {
 ///
 /// # Errors
 /// Whatever the file system says; the former file is then as it was.
-pub fn write_whole(path: &Path, content: impl FnOnce(&mut BufWriter<std::fs::File>) -> io::Result<()>) -> io::Result<()> {
+pub fn write_whole(
+    path: &Path,
+    content: impl FnOnce(&mut BufWriter<std::fs::File>) -> io::Result<()>,
+) -> io::Result<()> {
     if path.is_dir() {
         return Err(io::Error::new(io::ErrorKind::IsADirectory, "this is a folder"));
     }

@@ -90,11 +90,7 @@ impl Scene {
     ///
     /// # Errors
     /// `Empty`, `NoAtoms`, `Malformed`, `Unsupported`, `NoSuchModel`.
-    pub fn from_bytes_with(
-        name: &str,
-        bytes: &[u8],
-        options: &LoadOptions,
-    ) -> Result<Self, SceneError> {
+    pub fn from_bytes_with(name: &str, bytes: &[u8], options: &LoadOptions) -> Result<Self, SceneError> {
         import::read(name, bytes, options)
     }
 }
@@ -104,26 +100,17 @@ fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
     let fail = |error| SceneError::from_io(path, error);
     let file = File::open(path).map_err(fail)?;
     let metadata = file.metadata().map_err(fail)?;
-    let too_large = || SceneError::TooLarge {
-        file: path.display().to_string(),
-        limit_mib: MAX_FILE_MIB,
-    };
+    let too_large = || SceneError::TooLarge { file: path.display().to_string(), limit_mib: MAX_FILE_MIB };
     let limit = MAX_FILE_MIB << 20;
     if metadata.is_dir() {
-        return Err(SceneError::IsDirectory {
-            file: path.display().to_string(),
-        });
+        return Err(SceneError::IsDirectory { file: path.display().to_string() });
     }
     if metadata.len() > limit {
         return Err(too_large());
     }
     let mut bytes = Vec::with_capacity(metadata.len() as usize);
     file.take(limit + 1).read_to_end(&mut bytes).map_err(fail)?;
-    if bytes.len() as u64 > limit {
-        Err(too_large())
-    } else {
-        Ok(bytes)
-    }
+    if bytes.len() as u64 > limit { Err(too_large()) } else { Ok(bytes) }
 }
 
 #[cfg(test)]
@@ -132,25 +119,14 @@ mod tests {
 
     #[test]
     fn a_missing_file_and_a_folder_are_named_as_such() {
-        assert!(matches!(
-            Scene::load(Path::new("/no/such/file.pdb")),
-            Err(SceneError::NotFound { .. })
-        ));
+        assert!(matches!(Scene::load(Path::new("/no/such/file.pdb")), Err(SceneError::NotFound { .. })));
         let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-        assert!(matches!(
-            Scene::load(folder),
-            Err(SceneError::IsDirectory { .. })
-        ));
+        assert!(matches!(Scene::load(folder), Err(SceneError::IsDirectory { .. })));
     }
 
     #[test]
     fn messages_name_the_file_and_a_way_out() {
-        let message = Scene::load(Path::new("/no/such/file.pdb"))
-            .expect_err("missing")
-            .to_string();
-        assert!(
-            message.starts_with("/no/such/file.pdb: no such file; "),
-            "{message}"
-        );
+        let message = Scene::load(Path::new("/no/such/file.pdb")).expect_err("missing").to_string();
+        assert!(message.starts_with("/no/such/file.pdb: no such file; "), "{message}");
     }
 }

@@ -93,11 +93,7 @@ impl Molecule {
 
     /// Bytes that the molecule holds in memory.
     pub fn memory_bytes(&self) -> usize {
-        let chains: usize = self
-            .chains
-            .iter()
-            .map(|chain| size_of::<String>() + chain.capacity())
-            .sum();
+        let chains: usize = self.chains.iter().map(|chain| size_of::<String>() + chain.capacity()).sum();
         self.atoms.capacity() * size_of::<Atom>()
             + self.residues.capacity() * size_of::<Residue>()
             + self.bonds.capacity() * size_of::<Bond>()

@@ -17,22 +17,14 @@ impl Name {
     pub fn new(bytes: &[u8]) -> Self {
         let mut label = [0; Self::MAX_LEN];
         for (to, &from) in label.iter_mut().zip(bytes.trim_ascii()) {
-            *to = if from.is_ascii_graphic() || from == b' ' {
-                from
-            } else {
-                b'?'
-            };
+            *to = if from.is_ascii_graphic() || from == b' ' { from } else { b'?' };
         }
         Self(label)
     }
 
     /// The label as text, empty if the file gives none.
     pub fn as_str(&self) -> &str {
-        let length = self
-            .0
-            .iter()
-            .position(|&byte| byte == 0)
-            .unwrap_or(Self::MAX_LEN);
+        let length = self.0.iter().position(|&byte| byte == 0).unwrap_or(Self::MAX_LEN);
         std::str::from_utf8(&self.0[..length]).unwrap_or_default()
     }
 

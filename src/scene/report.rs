@@ -50,8 +50,8 @@ note_kinds! {
     BadBondRecord => "bond record" / "bond records": "ignored: no two atoms",
     /// A `CONECT` record to an atom that is missing or ambiguous.
     BondToNowhere => "bond record" / "bond records": "ignored: the atom is missing or its serial number is not unique",
-    /// A bond of the file that is several times too long.
-    LongBond => "bond of the file" / "bonds of the file": "left out: several times too long, probably across the edge of a cell",
+    /// A bond of the file that is several times too long, or has no length.
+    OddBond => "bond of the file" / "bonds of the file": "left out: no length, or several times too long as across the edge of a cell",
     /// Crowded atoms: not all neighbours were looked at.
     Crowded => "atom" / "atoms": "too crowded for bonds by distance: only some neighbours were tried",
     /// The count line of an XYZ file was mended.
@@ -83,20 +83,11 @@ pub struct Report {
 
 impl Report {
     /// Notes one thing; `text` is asked for only if the note is listed.
-    pub fn note(
-        &mut self,
-        kind: NoteKind,
-        line: impl Into<Option<u32>>,
-        text: impl FnOnce() -> String,
-    ) {
+    pub fn note(&mut self, kind: NoteKind, line: impl Into<Option<u32>>, text: impl FnOnce() -> String) {
         let count = &mut self.counts[kind as usize];
         *count = count.saturating_add(1);
         if *count as usize <= LISTED_PER_KIND {
-            self.entries.push(Note {
-                line: line.into(),
-                kind,
-                text: text(),
-            });
+            self.entries.push(Note { line: line.into(), kind, text: text() });
         }
     }
 
@@ -130,16 +121,9 @@ impl fmt::Display for Report {
             let (one, many, rest) = kind.words();
             write!(f, "{count} {} {rest}", if count == 1 { one } else { many })?;
             let listed = self.entries.iter().filter(|note| note.kind == kind);
-            let places: Vec<String> = listed
-                .map(Note::place)
-                .filter(|place| !place.is_empty())
-                .collect();
+            let places: Vec<String> = listed.map(Note::place).filter(|place| !place.is_empty()).collect();
             if !places.is_empty() {
-                let more = if count as usize > LISTED_PER_KIND {
-                    "; ..."
-                } else {
-                    ""
-                };
+                let more = if count as usize > LISTED_PER_KIND { "; ..." } else { "" };
                 write!(f, " ({}{more})", places.join("; "))?;
             }
             writeln!(f)?;
@@ -171,9 +155,9 @@ mod tests {
         }
         assert_eq!(report.entries.len(), LISTED_PER_KIND);
         assert_eq!(report.count(NoteKind::BadCoordinate), 1_000_000);
-        assert!(report.to_string().starts_with(
-            "1000000 atoms skipped: a coordinate is no number (line 1: x = \"nan\"; "
-        ));
+        assert!(
+            report.to_string().starts_with("1000000 atoms skipped: a coordinate is no number (line 1: x = \"nan\"; ")
+        );
     }
 
     #[test]

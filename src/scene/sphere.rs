@@ -21,25 +21,15 @@ const MARGIN: f64 = 1.0 + 1e-6;
 
 /// A sphere around balls given by centre and radius, at most about 1e-4 larger than the smallest one. Zero for no balls.
 pub fn bounding_sphere(balls: impl Iterator<Item = (Vec3, f32)> + Clone) -> Sphere {
-    let all = || {
-        balls
-            .clone()
-            .map(|(center, radius)| (center.as_dvec3(), f64::from(radius)))
-    };
+    let all = || balls.clone().map(|(center, radius)| (center.as_dvec3(), f64::from(radius)));
     let Some(first) = all().next() else {
-        return Sphere {
-            center: Vec3::ZERO,
-            radius: 0.0,
-        };
+        return Sphere { center: Vec3::ZERO, radius: 0.0 };
     };
     let mut active = vec![farthest(first.0, all())];
     let mut center = active[0].0;
     for _ in 0..MAX_PASSES {
         let out = farthest(center, all());
-        let inside = active
-            .iter()
-            .map(|&ball| reach(center, ball))
-            .fold(0.0, f64::max);
+        let inside = active.iter().map(|&ball| reach(center, ball)).fold(0.0, f64::max);
         if reach(center, out) <= inside * (1.0 + GOOD_ENOUGH) {
             break;
         }
@@ -48,10 +38,7 @@ pub fn bounding_sphere(balls: impl Iterator<Item = (Vec3, f32)> + Clone) -> Sphe
     }
     let center = center.as_vec3();
     let radius = reach(center.as_dvec3(), farthest(center.as_dvec3(), all())) * MARGIN;
-    Sphere {
-        center,
-        radius: (radius as f32).next_up(),
-    }
+    Sphere { center, radius: (radius as f32).next_up() }
 }
 
 /// A ball: centre and radius.
@@ -64,9 +51,8 @@ fn reach(from: DVec3, (center, radius): Ball) -> f64 {
 
 /// The ball that reaches farthest, the first of equals.
 fn farthest(from: DVec3, balls: impl Iterator<Item = Ball>) -> Ball {
-    let longest = balls
-        .map(|ball| (reach(from, ball), ball))
-        .reduce(|best, other| if other.0 > best.0 { other } else { best });
+    let longest =
+        balls.map(|ball| (reach(from, ball), ball)).reduce(|best, other| if other.0 > best.0 { other } else { best });
     longest.map_or((from, 0.0), |(_, ball)| ball)
 }
 
@@ -94,27 +80,15 @@ mod tests {
     fn random_balls(seed: u64, count: usize) -> Vec<(Vec3, f32)> {
         let mut state = seed;
         let mut next = || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
             (state >> 40) as f32 / (1 << 24) as f32
         };
-        (0..count)
-            .map(|_| {
-                (
-                    Vec3::new(next() * 30.0, next() * 10.0, next() * 5.0),
-                    1.0 + next(),
-                )
-            })
-            .collect()
+        (0..count).map(|_| (Vec3::new(next() * 30.0, next() * 10.0, next() * 5.0), 1.0 + next())).collect()
     }
 
     fn assert_holds(sphere: Sphere, balls: &[(Vec3, f32)]) {
         for &(center, radius) in balls {
-            assert!(
-                sphere.center.distance(center) + radius <= sphere.radius,
-                "{sphere:?} {center} {radius}"
-            );
+            assert!(sphere.center.distance(center) + radius <= sphere.radius, "{sphere:?} {center} {radius}");
         }
     }
 
@@ -126,15 +100,13 @@ mod tests {
 
     #[test]
     fn coincident_balls_need_the_largest() {
-        let sphere =
-            bounding_sphere([(Vec3::ONE, 1.0), (Vec3::ONE, 2.0), (Vec3::ONE, 1.5)].into_iter());
+        let sphere = bounding_sphere([(Vec3::ONE, 1.0), (Vec3::ONE, 2.0), (Vec3::ONE, 1.5)].into_iter());
         assert!((sphere.radius - 2.0).abs() < 1e-4, "{sphere:?}");
     }
 
     #[test]
     fn two_balls_touch_on_the_outside() {
-        let sphere =
-            bounding_sphere([(Vec3::ZERO, 1.0), (Vec3::new(10.0, 0.0, 0.0), 2.0)].into_iter());
+        let sphere = bounding_sphere([(Vec3::ZERO, 1.0), (Vec3::new(10.0, 0.0, 0.0), 2.0)].into_iter());
         assert!((sphere.radius - 6.5).abs() < 1e-3, "{sphere:?}");
         assert!((sphere.center.x - 5.5).abs() < 1e-3, "{sphere:?}");
     }
@@ -148,10 +120,7 @@ mod tests {
             Vec3::new(-1.0, -1.0, 1.0),
         ];
         let sphere = bounding_sphere(corners.into_iter().map(|corner| (corner, 0.5)));
-        assert!(
-            (sphere.radius - (3.0_f32.sqrt() + 0.5)).abs() < 3e-4,
-            "{sphere:?}"
-        );
+        assert!((sphere.radius - (3.0_f32.sqrt() + 0.5)).abs() < 3e-4, "{sphere:?}");
     }
 
     #[test]
@@ -162,27 +131,20 @@ mod tests {
             assert_holds(sphere, &balls);
             // The published iteration, whose steps fall as 1/i, bounds the optimum from above.
             let mut center = DVec3::ZERO;
-            let exact: Vec<Ball> = balls
-                .iter()
-                .map(|&(center, radius)| (center.as_dvec3(), f64::from(radius)))
-                .collect();
+            let exact: Vec<Ball> =
+                balls.iter().map(|&(center, radius)| (center.as_dvec3(), f64::from(radius))).collect();
             for i in 1..4000 {
                 let out = farthest(center, exact.iter().copied());
                 center += (out.0 - center) / f64::from(i + 1);
             }
             let slow = reach(center, farthest(center, exact.iter().copied()));
-            assert!(
-                f64::from(sphere.radius) <= slow * 1.0005,
-                "seed {seed}: {} against {slow}",
-                sphere.radius
-            );
+            assert!(f64::from(sphere.radius) <= slow * 1.0001, "seed {seed}: {} against {slow}", sphere.radius);
         }
     }
 
     #[test]
     fn huge_coordinates_stay_finite() {
-        let sphere =
-            bounding_sphere([(Vec3::splat(-1e30), 1.7), (Vec3::splat(1e30), 1.7)].into_iter());
+        let sphere = bounding_sphere([(Vec3::splat(-1e30), 1.7), (Vec3::splat(1e30), 1.7)].into_iter());
         assert!(sphere.radius.is_finite() && sphere.radius >= 1.7e30);
     }
 }

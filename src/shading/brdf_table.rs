@@ -101,10 +101,7 @@ fn diffuse_albedo(n_dot_v: f64, roughness: f64, num_samples: u32) -> f64 {
 /// Point `i` of `n` of the Hammersley set, centred in its stratum.
 fn hammersley(i: u32, n: u32) -> (f64, f64) {
     let radical_inverse = f64::from(i.reverse_bits()) / 2f64.powi(32);
-    (
-        (f64::from(i) + 0.5) / f64::from(n),
-        radical_inverse + 0.5 / f64::from(n),
-    )
+    ((f64::from(i) + 0.5) / f64::from(n), radical_inverse + 0.5 / f64::from(n))
 }
 
 fn normalize(v: [f64; 3]) -> [f64; 3] {

@@ -74,10 +74,7 @@ impl SoftBox {
     /// Unit vectors (to the middle, along, across).
     fn frame(&self) -> [Vec3; 3] {
         let z = self.direction.normalize_or(Vec3::Z);
-        let x = self
-            .tangent
-            .reject_from_normalized(z)
-            .normalize_or(z.any_orthonormal_vector());
+        let x = self.tangent.reject_from_normalized(z).normalize_or(z.any_orthonormal_vector());
         [z, x, z.cross(x)]
     }
 
@@ -94,9 +91,7 @@ impl SoftBox {
             (1.0 + t + t * t) / (3.0 * t * t * t)
         };
         EnvironmentLobe {
-            direction: z
-                .extend(flux(self.widths[0]) * flux(self.widths[1]))
-                .to_array(),
+            direction: z.extend(flux(self.widths[0]) * flux(self.widths[1])).to_array(),
             tangent: x.extend(self.widths[0]).to_array(),
             bitangent: y.extend(self.widths[1]).to_array(),
             color: self.color.extend(0.0).to_array(),
@@ -139,18 +134,8 @@ impl Studio {
 
     /// Radiance 1 from everywhere, for furnace tests.
     pub fn white() -> Self {
-        let dark = SoftBox {
-            direction: Vec3::Z,
-            tangent: Vec3::X,
-            widths: [0.5; 2],
-            color: Vec3::ZERO,
-        };
-        Self {
-            zenith: Vec3::ONE,
-            ground: Vec3::ONE,
-            horizon_width: 0.5,
-            lobes: [dark; NUM_LOBES],
-        }
+        let dark = SoftBox { direction: Vec3::Z, tangent: Vec3::X, widths: [0.5; 2], color: Vec3::ZERO };
+        Self { zenith: Vec3::ONE, ground: Vec3::ONE, horizon_width: 0.5, lobes: [dark; NUM_LOBES] }
     }
 
     /// Radiance from unit `direction` in view space, linear Rec. 709.
@@ -158,17 +143,13 @@ impl Studio {
         let width2 = self.horizon_width * self.horizon_width;
         let height = direction.y * ((1.0 + width2) / (direction.y * direction.y + width2)).sqrt();
         let gradient = self.ground.lerp(self.zenith, 0.5 + 0.5 * height);
-        self.lobes
-            .iter()
-            .fold(gradient, |sum, lobe| sum + lobe.radiance(direction))
+        self.lobes.iter().fold(gradient, |sum, lobe| sum + lobe.radiance(direction))
     }
 
     /// What the shader reads.
     pub fn uniform(&self) -> Environment {
         Environment {
-            sh: self
-                .irradiance_over_pi()
-                .map(|c| c.as_vec3().extend(0.0).to_array()),
+            sh: self.irradiance_over_pi().map(|c| c.as_vec3().extend(0.0).to_array()),
             zenith: self.zenith.extend(self.horizon_width).to_array(),
             ground: self.ground.extend(0.0).to_array(),
             lobes: self.lobes.map(|lobe| lobe.lobe()),
@@ -193,17 +174,7 @@ impl Studio {
             let quadratic = 15.0 / (16.0 * PI);
             let linear = 1.0 / (2.0 * PI);
             let zonal = 5.0 / (64.0 * PI);
-            [
-                1.0 / (4.0 * PI),
-                linear,
-                linear,
-                linear,
-                quadratic,
-                quadratic,
-                zonal,
-                quadratic,
-                quadratic / 4.0,
-            ]
+            [1.0 / (4.0 * PI), linear, linear, linear, quadratic, quadratic, zonal, quadratic, quadratic / 4.0]
         };
         let moments = mean_over_sphere(|d| {
             let radiance = self.radiance(d.as_vec3()).as_dvec3();
@@ -216,17 +187,7 @@ impl Studio {
 /// The polynomials behind `Environment::sh`.
 fn basis(d: DVec3) -> [f64; 9] {
     let DVec3 { x, y, z } = d;
-    [
-        1.0,
-        y,
-        z,
-        x,
-        x * y,
-        y * z,
-        3.0 * z * z - 1.0,
-        x * z,
-        x * x - y * y,
-    ]
+    [1.0, y, z, x, x * y, y * z, 3.0 * z * z - 1.0, x * z, x * x - y * y]
 }
 
 /// Mean over a Fibonacci spiral of directions.
@@ -237,10 +198,7 @@ fn mean_over_sphere<const N: usize>(f: impl Fn(DVec3) -> [DVec3; N]) -> [DVec3; 
         let y = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(NUM_DIRECTIONS);
         let radius = (1.0 - y * y).sqrt();
         let (sin, cos) = (golden_angle * f64::from(i)).sin_cos();
-        for (total, value) in sum
-            .iter_mut()
-            .zip(f(DVec3::new(radius * cos, y, radius * sin)))
-        {
+        for (total, value) in sum.iter_mut().zip(f(DVec3::new(radius * cos, y, radius * sin))) {
             *total += value;
         }
     }

@@ -60,6 +60,14 @@ pub trait ObjectShader: Sync {
     fn material_info(&self) -> StructInfo;
     /// The bytes of one material.
     fn material(&self, values: &Values, context: &MaterialContext) -> Vec<u8>;
+    /// Names of the constants by which its WGSL leaves out what no material of a style uses.
+    fn features(&self) -> &'static [&'static str] {
+        &[]
+    }
+    /// Which of them a material uses, one bit each.
+    fn features_used(&self, _values: &Values) -> u32 {
+        0
+    }
     /// Its outline by enlarged back faces, if it has one.
     fn hull(&self, _values: &Values) -> Option<Hull> {
         None

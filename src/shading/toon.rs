@@ -60,6 +60,14 @@ gpu_struct! {
         pub levels: u32,
         /// 0..1.
         pub opacity: f32,
+        /// (scale + bias)^exponent.
+        pub top: f32,
+        /// Padding.
+        pub _pad0: f32,
+        /// Padding.
+        pub _pad1: f32,
+        /// Padding.
+        pub _pad2: f32,
     }
 }
 
@@ -96,8 +104,23 @@ impl ObjectShader for Toon {
             specular_limit: values.number("specular_limit") as f32,
             levels: LEVELS.iter().position(|level| *level == values.choice("levels")).unwrap_or(0) as u32,
             opacity: values.number("opacity") as f32,
+            top: (values.number("scale") + values.number("bias")).powf(values.number("exponent")) as f32,
+            _pad0: 0.0,
+            _pad1: 0.0,
+            _pad2: 0.0,
         })
         .to_vec()
+    }
+    fn features(&self) -> &'static [&'static str] {
+        &["TOON_EXPONENT", "TOON_SPECULAR", "TOON_OUTLINE"]
+    }
+    fn features_used(&self, values: &Values) -> u32 {
+        let used = [
+            values.number("exponent") != 1.0,
+            values.optional_color("specular_color").is_some(),
+            values.number("outline_bias") > 0.0,
+        ];
+        used.iter().enumerate().map(|(bit, used)| u32::from(*used) << bit).sum()
     }
     fn hull(&self, values: &Values) -> Option<Hull> {
         let width = values.length("hull_size");

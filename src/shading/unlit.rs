@@ -47,8 +47,7 @@ impl ObjectShader for Unlit {
         UnlitMaterial::info()
     }
     fn material(&self, values: &Values, _context: &MaterialContext) -> Vec<u8> {
-        let material =
-            UnlitMaterial { opacity: values.number("opacity") as f32, _pad0: 0.0, _pad1: 0.0, _pad2: 0.0 };
+        let material = UnlitMaterial { opacity: values.number("opacity") as f32, _pad0: 0.0, _pad1: 0.0, _pad2: 0.0 };
         bytemuck::bytes_of(&material).to_vec()
     }
 }

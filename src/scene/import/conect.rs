@@ -44,13 +44,9 @@ impl Conect {
     pub(super) fn add(&mut self, line: u32, record: &[u8], report: &mut Report) {
         let record = record.trim_ascii_end();
         let field = |index: usize| {
-            record
-                .get((6 + 5 * index).min(record.len())..(11 + 5 * index).min(record.len()))
-                .unwrap_or_default()
+            record.get((6 + 5 * index).min(record.len())..(11 + 5 * index).min(record.len())).unwrap_or_default()
         };
-        let fields = (1..5)
-            .map(field)
-            .filter(|field| !field.trim_ascii().is_empty());
+        let fields = (1..5).map(field).filter(|field| !field.trim_ascii().is_empty());
         let Some(from) = serial(field(0)) else {
             report.note(NoteKind::BadBondRecord, line, || quote(record));
             return;
@@ -58,12 +54,7 @@ impl Conect {
         for field in fields {
             match serial(field) {
                 Some(to) if to != from => {
-                    self.mentions.push(Mention {
-                        low: from.min(to),
-                        high: from.max(to),
-                        from_high: from > to,
-                        line,
-                    });
+                    self.mentions.push(Mention { low: from.min(to), high: from.max(to), from_high: from > to, line });
                 }
                 _ => report.note(NoteKind::BadBondRecord, line, || {
                     format!("{} to {}", quote(self::trim(record)), quote(field))
@@ -79,11 +70,7 @@ impl Conect {
 
     /// Serial numbers that bonds name, sorted, each once.
     pub(super) fn serials(&self) -> Vec<u32> {
-        let mut serials: Vec<u32> = self
-            .mentions
-            .iter()
-            .flat_map(|mention| [mention.low, mention.high])
-            .collect();
+        let mut serials: Vec<u32> = self.mentions.iter().flat_map(|mention| [mention.low, mention.high]).collect();
         serials.sort_unstable();
         serials.dedup();
         serials
@@ -100,10 +87,7 @@ impl Conect {
         places.sort_unstable();
         self.mentions.sort_unstable();
         let mut pairs: Vec<(Mention, u8)> = Vec::new();
-        for group in self
-            .mentions
-            .chunk_by(|a, b| (a.low, a.high) == (b.low, b.high))
-        {
+        for group in self.mentions.chunk_by(|a, b| (a.low, a.high) == (b.low, b.high)) {
             let from_high = group.iter().filter(|mention| mention.from_high).count();
             let order = from_high.max(group.len() - from_high).min(3) as u8;
             let first = group.iter().min_by_key(|mention| mention.line).copied();
@@ -113,26 +97,12 @@ impl Conect {
 
         let mut num_partners: HashMap<u32, u8> = HashMap::new();
         let mut bonds = Vec::new();
-        for (
-            Mention {
-                low, high, line, ..
-            },
-            order,
-        ) in pairs
-        {
-            if [low, high].iter().any(|end| {
-                num_partners
-                    .get(end)
-                    .is_some_and(|&count| count >= MAX_PARTNERS)
-            }) {
-                report.note(NoteKind::BadBondRecord, line, || {
-                    format!("more than {MAX_PARTNERS} bonds of one atom")
-                });
+        for (Mention { low, high, line, .. }, order) in pairs {
+            if [low, high].iter().any(|end| num_partners.get(end).is_some_and(|&count| count >= MAX_PARTNERS)) {
+                report.note(NoteKind::BadBondRecord, line, || format!("more than {MAX_PARTNERS} bonds of one atom"));
                 continue;
             }
-            [low, high]
-                .iter()
-                .for_each(|&end| *num_partners.entry(end).or_default() += 1);
+            [low, high].iter().for_each(|&end| *num_partners.entry(end).or_default() += 1);
             let (ends, others) = (of_serial(&places, low), of_serial(&places, high));
             if (ends.is_empty() || others.is_empty()) && is_complete {
                 report.note(NoteKind::BondToNowhere, line, || format!("{low} to {high}"));
@@ -145,11 +115,7 @@ impl Conect {
                 rest = &rest[before..];
                 let same = &rest[..rest.partition_point(|place| place.model <= end[0].model)];
                 match (end, same) {
-                    ([a], [b]) => bonds.push(FileBond {
-                        a: a.atom,
-                        b: b.atom,
-                        order,
-                    }),
+                    ([a], [b]) => bonds.push(FileBond { a: a.atom, b: b.atom, order }),
                     (_, []) => {}
                     _ => is_unique = false,
                 }
@@ -184,66 +150,31 @@ mod tests {
         for (line, record) in (1..).zip(records) {
             conect.add(line, record.as_bytes(), &mut report);
         }
-        let places = places
-            .iter()
-            .map(|&(serial, model, atom)| SerialPlace {
-                serial,
-                model,
-                atom,
-            })
-            .collect();
+        let places = places.iter().map(|&(serial, model, atom)| SerialPlace { serial, model, atom }).collect();
         let bonds = conect.resolve(places, true, &mut report);
-        (
-            bonds
-                .into_iter()
-                .map(|bond| (bond.a, bond.b, bond.order))
-                .collect(),
-            report,
-        )
+        (bonds.into_iter().map(|bond| (bond.a, bond.b, bond.order)).collect(), report)
     }
 
     #[test]
     fn repeated_partners_are_higher_orders_and_both_ends_are_one_bond() {
         let places = [(1, 1, 0), (2, 1, 1), (3, 1, 2)];
+        assert_eq!(resolve(&["CONECT    1    2", "CONECT    2    1"], &places).0, [(0, 1, 1)]);
         assert_eq!(
-            resolve(&["CONECT    1    2", "CONECT    2    1"], &places).0,
-            [(0, 1, 1)]
-        );
-        assert_eq!(
-            resolve(
-                &["CONECT    1    2    2", "CONECT    2    1    1    3"],
-                &places
-            )
-            .0,
+            resolve(&["CONECT    1    2    2", "CONECT    2    1    1    3"], &places).0,
             [(0, 1, 2), (1, 2, 1)]
         );
-        assert_eq!(
-            resolve(&["CONECT    1    2    2    2    2"], &places).0,
-            [(0, 1, 3)]
-        );
+        assert_eq!(resolve(&["CONECT    1    2    2    2    2"], &places).0, [(0, 1, 3)]);
     }
 
     #[test]
     fn full_columns_need_no_spaces() {
-        assert_eq!(
-            resolve(&["CONECT1000110002"], &[(10_001, 1, 0), (10_002, 1, 1)]).0,
-            [(0, 1, 1)]
-        );
-        assert_eq!(
-            resolve(&["CONECTA0000A0001"], &[(100_000, 1, 0), (100_001, 1, 1)]).0,
-            [(0, 1, 1)]
-        );
+        assert_eq!(resolve(&["CONECT1000110002"], &[(10_001, 1, 0), (10_002, 1, 1)]).0, [(0, 1, 1)]);
+        assert_eq!(resolve(&["CONECTA0000A0001"], &[(100_000, 1, 0), (100_001, 1, 1)]).0, [(0, 1, 1)]);
     }
 
     #[test]
     fn nonsense_is_noted_with_its_line() {
-        let records = [
-            "CONECT    1 9999 8888",
-            "CONECT    1    1",
-            "CONECT   ab   cd",
-            "CONECT",
-            "CON",
-        ];
+        let records = ["CONECT    1 9999 8888", "CONECT    1    1", "CONECT   ab   cd", "CONECT", "CON"];
         let (bonds, report) = resolve(&records, &[(1, 1, 0)]);
         assert!(bonds.is_empty());
         assert_eq!(report.count(NoteKind::BondToNowhere), 2);
@@ -253,10 +184,7 @@ mod tests {
     #[test]
     fn every_model_gets_the_bonds() {
         let places = [(1, 1, 0), (2, 1, 1), (1, 2, 2), (2, 2, 3), (1, 3, 4)];
-        assert_eq!(
-            resolve(&["CONECT    1    2"], &places).0,
-            [(0, 1, 1), (2, 3, 1)]
-        );
+        assert_eq!(resolve(&["CONECT    1    2"], &places).0, [(0, 1, 1), (2, 3, 1)]);
     }
 
     #[test]
@@ -268,15 +196,9 @@ mod tests {
 
     #[test]
     fn a_star_of_a_thousand_bonds_is_cut() {
-        let records: Vec<String> = (2..1000)
-            .map(|serial| format!("CONECT    1{serial:>5}"))
-            .collect();
+        let records: Vec<String> = (2..1000).map(|serial| format!("CONECT    1{serial:>5}")).collect();
         let records: Vec<&str> = records.iter().map(String::as_str).collect();
-        let places: Vec<(u32, u32, u32)> =
-            (1..1000).map(|serial| (serial, 1, serial - 1)).collect();
-        assert_eq!(
-            resolve(&records, &places).0.len(),
-            usize::from(MAX_PARTNERS)
-        );
+        let places: Vec<(u32, u32, u32)> = (1..1000).map(|serial| (serial, 1, serial - 1)).collect();
+        assert_eq!(resolve(&records, &places).0.len(), usize::from(MAX_PARTNERS));
     }
 }

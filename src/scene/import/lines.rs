@@ -10,10 +10,7 @@ pub(super) struct Lines<'a> {
 impl<'a> Lines<'a> {
     /// The lines of a file whose byte-order mark, if any, is skipped.
     pub(super) fn new(bytes: &'a [u8]) -> Self {
-        Self {
-            rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes),
-            number: 0,
-        }
+        Self { rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), number: 0 }
     }
 }
 
@@ -29,11 +26,7 @@ impl<'a> Iterator for Lines<'a> {
             return Some((self.number, std::mem::take(&mut self.rest)));
         };
         let line = &self.rest[..end];
-        let length = if self.rest[end..].starts_with(b"\r\n") {
-            2
-        } else {
-            1
-        };
+        let length = if self.rest[end..].starts_with(b"\r\n") { 2 } else { 1 };
         self.rest = &self.rest[end + length..];
         Some((self.number, line))
     }
@@ -45,13 +38,7 @@ pub(super) fn quote(bytes: &[u8]) -> String {
     let text: String = bytes
         .iter()
         .take(24)
-        .map(|&byte| {
-            if byte.is_ascii_graphic() || byte == b' ' {
-                byte as char
-            } else {
-                '?'
-            }
-        })
+        .map(|&byte| if byte.is_ascii_graphic() || byte == b' ' { byte as char } else { '?' })
         .collect();
     let more = if bytes.len() > 24 { "..." } else { "" };
     format!("\"{text}{more}\"")
@@ -64,15 +51,7 @@ mod tests {
     #[test]
     fn all_line_ends_are_one_line_each() {
         let lines: Vec<_> = Lines::new(b"\xef\xbb\xbfa\nb\r\nc\rd\n\n\re").collect();
-        let expected: [(u32, &[u8]); 7] = [
-            (1, b"a"),
-            (2, b"b"),
-            (3, b"c"),
-            (4, b"d"),
-            (5, b""),
-            (6, b""),
-            (7, b"e"),
-        ];
+        let expected: [(u32, &[u8]); 7] = [(1, b"a"), (2, b"b"), (3, b"c"), (4, b"d"), (5, b""), (6, b""), (7, b"e")];
         assert_eq!(lines, expected);
         assert_eq!(Lines::new(b"").count(), 0);
     }

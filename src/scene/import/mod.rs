@@ -35,11 +35,7 @@ struct Import<'a> {
 impl Import<'_> {
     /// The error of a line that nothing can be made of; `what` says the way out after a semicolon.
     fn malformed(&self, line: u32, what: String) -> SceneError {
-        SceneError::Malformed {
-            file: self.file.to_string(),
-            line,
-            what,
-        }
+        SceneError::Malformed { file: self.file.to_string(), line, what }
     }
 
     /// The position of three coordinates; `None`, with a note, if one is no number.
@@ -51,9 +47,7 @@ impl Import<'_> {
         for (axis, field) in fields.into_iter().enumerate() {
             let name = ["x", "y", "z"][axis];
             match number::float(field) {
-                Some(value) if value.is_finite() && value.abs() <= number::ABSURD => {
-                    position[axis] = value
-                }
+                Some(value) if value.is_finite() && value.abs() <= number::ABSURD => position[axis] = value,
                 Some(value) if value.is_finite() => {
                     let what = format!(
                         "{name} = {} is no position in angstrom; correct it or delete the line",
@@ -62,9 +56,7 @@ impl Import<'_> {
                     return Err(self.malformed(line, what));
                 }
                 _ => {
-                    self.report.note(NoteKind::BadCoordinate, line, || {
-                        format!("{name} = {}", lines::quote(field))
-                    });
+                    self.report.note(NoteKind::BadCoordinate, line, || format!("{name} = {}", lines::quote(field)));
                     return Ok(None);
                 }
             }
@@ -77,43 +69,24 @@ impl Import<'_> {
 pub(super) fn read(file: &str, bytes: &[u8], options: &LoadOptions) -> Result<Scene, SceneError> {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     if text.trim_ascii().is_empty() {
-        return Err(SceneError::Empty {
-            file: file.to_string(),
-        });
+        return Err(SceneError::Empty { file: file.to_string() });
     }
-    let unsupported = |what: String| {
-        Err(SceneError::Unsupported {
-            file: file.to_string(),
-            what,
-        })
-    };
-    let mut import = Import {
-        file,
-        options,
-        report: Report::default(),
-    };
+    let unsupported = |what: String| Err(SceneError::Unsupported { file: file.to_string(), what });
+    let mut import = Import { file, options, report: Report::default() };
     let molecule: Molecule = match sniff(file, bytes) {
         Format::Pdb => pdb::read(&mut import, bytes)?,
         Format::Xyz => xyz::read(&mut import, bytes)?,
         Format::Foreign(what) => {
-            return unsupported(format!(
-                "is {what}, not a molecule in PDB or XYZ format; {}",
-                way_out(what)
-            ));
+            return unsupported(format!("is {what}, not a molecule in PDB or XYZ format; {}", way_out(what)));
         }
         Format::Unknown => {
-            return unsupported("is in no format that is known here; save the molecule as PDB or XYZ, with that extension".to_string());
+            return unsupported(
+                "is in no format that is known here; save the molecule as PDB or XYZ, with that extension".to_string(),
+            );
         }
     };
-    let name = Path::new(file)
-        .file_stem()
-        .map(|stem| stem.to_string_lossy().into_owned())
-        .unwrap_or_default();
-    Ok(Scene {
-        molecule,
-        report: import.report,
-        name,
-    })
+    let name = Path::new(file).file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    Ok(Scene { molecule, report: import.report, name })
 }
 
 /// What helps with a file of another format.

@@ -29,15 +29,7 @@ pub(super) struct Models {
 
 impl Models {
     pub(super) fn new(choice: ModelChoice) -> Self {
-        Self {
-            choice,
-            current: 0,
-            current_has_atoms: false,
-            chosen: None,
-            first: None,
-            num_models: 0,
-            num_wanted: 0,
-        }
+        Self { choice, current: 0, current_has_atoms: false, chosen: None, first: None, num_models: 0, num_wanted: 0 }
     }
 
     /// Begins a model; a number that is missing or does not grow is replaced by the next one.
@@ -72,20 +64,14 @@ impl Models {
 
     /// The error of a number that no model has, if that is what happened.
     pub(super) fn missing(&self, file: &str) -> Option<SceneError> {
-        let (ModelChoice::Number(model), Some(first), 0) =
-            (self.choice, self.first, self.num_wanted)
-        else {
+        let (ModelChoice::Number(model), Some(first), 0) = (self.choice, self.first, self.num_wanted) else {
             return None;
         };
         let available = match self.num_models {
             1 => format!("only model {first}"),
             count => format!("{count}, from {first} to {}", self.current),
         };
-        Some(SceneError::NoSuchModel {
-            file: file.to_string(),
-            model,
-            available,
-        })
+        Some(SceneError::NoSuchModel { file: file.to_string(), model, available })
     }
 }
 

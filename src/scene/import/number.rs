@@ -11,9 +11,7 @@ pub(super) fn float(field: &[u8]) -> Option<f64> {
 
 /// Plain digits with a point, by far the most common: both digits and power of ten are exact in f64, so is the rounding.
 fn fixed_point(field: &[u8]) -> Option<f64> {
-    const POWERS: [f64; 16] = [
-        1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-    ];
+    const POWERS: [f64; 16] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
     let (negative, digits) = match field {
         [b'-', digits @ ..] => (true, digits),
         [b'+', digits @ ..] | digits => (false, digits),
@@ -49,11 +47,7 @@ fn any_float(field: &[u8]) -> Option<f64> {
     let mut buffer = [0; 64];
     let text = buffer.get_mut(..field.len())?;
     for (to, &from) in text.iter_mut().zip(field) {
-        *to = if matches!(from, b'd' | b'D') {
-            b'e'
-        } else {
-            from
-        };
+        *to = if matches!(from, b'd' | b'D') { b'e' } else { from };
     }
     std::str::from_utf8(text).ok()?.parse().ok()
 }
@@ -80,9 +74,7 @@ pub(super) fn hybrid36(field: &[u8]) -> Option<i64> {
         b'a'..=b'z' if lower => Some(i64::from(byte - b'a') + 10),
         _ => None,
     };
-    let value = field
-        .iter()
-        .try_fold(0, |value, &byte| Some(value * 36 + digit(byte)?))?;
+    let value = field.iter().try_fold(0, |value, &byte| Some(value * 36 + digit(byte)?))?;
     let width = field.len() as u32 - 1;
     // The first letter is A = 10; lower-case numbers follow the 26 upper-case letters.
     let before = if lower { 26 - 10 } else { -10 };
@@ -92,15 +84,11 @@ pub(super) fn hybrid36(field: &[u8]) -> Option<i64> {
 /// A PDB atom's serial number: decimal, hybrid-36, or hexadecimal as VMD writes it past 99999.
 pub(super) fn serial(field: &[u8]) -> Option<u32> {
     let number = hybrid36(field).or_else(|| {
-        let is_hex = field.len() == 5
-            && field[0].is_ascii_digit()
-            && field.iter().all(u8::is_ascii_hexdigit);
+        let is_hex = field.len() == 5 && field[0].is_ascii_digit() && field.iter().all(u8::is_ascii_hexdigit);
         let text = std::str::from_utf8(field).ok().filter(|_| is_hex)?;
         i64::from_str_radix(text, 16).ok()
     })?;
-    u32::try_from(number)
-        .ok()
-        .filter(|&number| number != u32::MAX)
+    u32::try_from(number).ok().filter(|&number| number != u32::MAX)
 }
 
 #[cfg(test)]
@@ -122,23 +110,10 @@ mod tests {
             "999999999999999",
         ] {
             let expected: f64 = text.trim().parse().expect("a number");
-            assert_eq!(
-                fixed_point(text.trim().as_bytes()),
-                Some(expected),
-                "{text}"
-            );
+            assert_eq!(fixed_point(text.trim().as_bytes()), Some(expected), "{text}");
             assert_eq!(float(text.as_bytes()), Some(expected), "{text}");
         }
-        for text in [
-            "",
-            ".",
-            "-",
-            "1..2",
-            "1e5",
-            "1 2",
-            "--1",
-            "1234567890123456789",
-        ] {
+        for text in ["", ".", "-", "1..2", "1e5", "1 2", "--1", "1234567890123456789"] {
             assert_eq!(fixed_point(text.as_bytes()), None, "{text}");
         }
     }

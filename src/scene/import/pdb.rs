@@ -27,10 +27,7 @@ const COORDINATES_END: usize = 54;
 
 /// What a line is for.
 enum Record {
-    Atom {
-        is_hetero: bool,
-        is_lower_case: bool,
-    },
+    Atom { is_hetero: bool, is_lower_case: bool },
     Conect,
     Model,
     EndOfModel,
@@ -62,15 +59,12 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<Molecule, Sc
     for (number, line) in Lines::new(bytes) {
         last_line = number;
         match record(line) {
-            Record::Atom {
-                is_hetero,
-                is_lower_case,
-            } => {
+            Record::Atom { is_hetero, is_lower_case } => {
                 if matches!(state, ModelState::None | ModelState::Closed) {
                     if state == ModelState::Closed {
-                        import.report.note(NoteKind::ModelMended, number, || {
-                            "atoms after the end of a model".to_string()
-                        });
+                        import
+                            .report
+                            .note(NoteKind::ModelMended, number, || "atoms after the end of a model".to_string());
                     }
                     models.begin(None);
                     state = ModelState::Implicit;
@@ -79,9 +73,7 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<Molecule, Sc
                 if is_lower_case {
                     import.report.note(NoteKind::LowerCase, number, String::new);
                 }
-                if let Some(atom) =
-                    read_atom(import, number, line, model, is_hetero, is_lower_case)?
-                {
+                if let Some(atom) = read_atom(import, number, line, model, is_hetero, is_lower_case)? {
                     builder.push(&atom);
                     serials.push((read_serial(line), model));
                 }
@@ -89,9 +81,9 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<Molecule, Sc
             Record::Conect => conect.add(number, line, &mut import.report),
             Record::Model => {
                 if matches!(state, ModelState::Explicit | ModelState::Implicit) {
-                    import.report.note(NoteKind::ModelMended, number, || {
-                        "MODEL before the end of the last one".to_string()
-                    });
+                    import
+                        .report
+                        .note(NoteKind::ModelMended, number, || "MODEL before the end of the last one".to_string());
                 }
                 let model = number::integer(line.get(5..14.min(line.len())).unwrap_or_default());
                 models.begin(model.and_then(|model| u32::try_from(model).ok()));
@@ -106,38 +98,24 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<Molecule, Sc
         }
     }
     if state == ModelState::Explicit {
-        import.report.note(NoteKind::ModelMended, last_line, || {
-            "the file ends within a model".to_string()
-        });
+        import.report.note(NoteKind::ModelMended, last_line, || "the file ends within a model".to_string());
     }
     if let Some(error) = models.missing(import.file) {
         return Err(error);
     }
-    import
-        .report
-        .note_many(NoteKind::ModelSkipped, models.num_skipped(), String::new);
+    import.report.note_many(NoteKind::ModelSkipped, models.num_skipped(), String::new);
     note_duplicates(&serials, &mut import.report);
     let bonds = if conect.is_empty() {
         Vec::new()
     } else {
         let wanted = conect.serials();
         let is_wanted = |serial: &u32| wanted.binary_search(serial).is_ok();
-        let places = (0..)
-            .zip(&serials)
-            .filter(|(_, (serial, _))| is_wanted(serial));
-        let places = places
-            .map(|(atom, &(serial, model))| SerialPlace {
-                serial,
-                model,
-                atom,
-            })
-            .collect();
+        let places = (0..).zip(&serials).filter(|(_, (serial, _))| is_wanted(serial));
+        let places = places.map(|(atom, &(serial, model))| SerialPlace { serial, model, atom }).collect();
         conect.resolve(places, models.num_skipped() == 0, &mut import.report)
     };
     drop(serials);
-    builder
-        .finish(&bonds, &mut import.report)
-        .ok_or_else(|| no_atoms(import))
+    builder.finish(&bonds, &mut import.report).ok_or_else(|| no_atoms(import))
 }
 
 /// The error of a file without atoms that can be drawn.
@@ -145,15 +123,9 @@ fn no_atoms(import: &Import<'_>) -> SceneError {
     let hint = if import.report.is_empty() {
         "no line begins with ATOM or HETATM: download the whole entry".to_string()
     } else {
-        format!(
-            "every atom line is damaged: {}",
-            import.report.to_string().trim_end().replace('\n', "; ")
-        )
+        format!("every atom line is damaged: {}", import.report.to_string().trim_end().replace('\n', "; "))
     };
-    SceneError::NoAtoms {
-        file: import.file.to_string(),
-        hint,
-    }
+    SceneError::NoAtoms { file: import.file.to_string(), hint }
 }
 
 /// What a line is for, by its first columns in any case.
@@ -161,29 +133,17 @@ fn record(line: &[u8]) -> Record {
     let Some(first) = line.first() else {
         return Record::Other;
     };
+    let starts = |name: &[u8]| line.get(..name.len()).is_some_and(|start| start.eq_ignore_ascii_case(name));
+    // Names of six letters may be followed by a full column (HETATMA0000, CONECT1000110002), shorter ones may not.
     let is = |name: &[u8]| {
-        line.get(..name.len())
-            .is_some_and(|start| start.eq_ignore_ascii_case(name))
-            && line
-                .get(name.len())
-                .is_none_or(|next| next.is_ascii_whitespace() || next.is_ascii_digit())
+        let next = line.get(name.len());
+        starts(name) && next.is_none_or(|next| next.is_ascii_whitespace() || next.is_ascii_digit())
     };
+    let is_lower_case = first.is_ascii_lowercase();
     match first.to_ascii_uppercase() {
-        b'A' if is(b"ATOM") => Record::Atom {
-            is_hetero: false,
-            is_lower_case: first.is_ascii_lowercase(),
-        },
-        b'H' if is(b"HETATM") => Record::Atom {
-            is_hetero: true,
-            is_lower_case: first.is_ascii_lowercase(),
-        },
-        // Full columns leave no space: CONECT1000110002, CONECTA0000.
-        b'C' if line
-            .get(..6)
-            .is_some_and(|start| start.eq_ignore_ascii_case(b"CONECT")) =>
-        {
-            Record::Conect
-        }
+        b'A' if is(b"ATOM") => Record::Atom { is_hetero: false, is_lower_case },
+        b'H' if starts(b"HETATM") => Record::Atom { is_hetero: true, is_lower_case },
+        b'C' if starts(b"CONECT") => Record::Conect,
         b'M' if is(b"MODEL") => Record::Model,
         b'E' if is(b"ENDMDL") || is(b"END") => Record::EndOfModel,
         _ => Record::Other,
@@ -207,11 +167,7 @@ fn letter(byte: u8) -> u8 {
 
 /// The serial number; a sixth digit uses the blank column after it.
 fn read_serial(line: &[u8]) -> u32 {
-    let end = if column(line, 11).is_ascii_digit() {
-        12
-    } else {
-        11
-    };
+    let end = if column(line, 11).is_ascii_digit() { 12 } else { 11 };
     number::serial(columns(line, 6, end)).unwrap_or(NO_SERIAL)
 }
 
@@ -224,33 +180,21 @@ fn read_atom<'a>(
     is_hetero: bool,
     is_lower_case: bool,
 ) -> Result<Option<NewAtom<'a>>, SceneError> {
-    if line.len() < COORDINATES_END && !columns(line, 46, COORDINATES_END).trim_ascii().is_empty()
-        || line.len() <= 46
-    {
+    if line.len() < COORDINATES_END && !columns(line, 46, COORDINATES_END).trim_ascii().is_empty() || line.len() <= 46 {
         import.report.note(NoteKind::ShortLine, number, String::new);
         return Ok(None);
     }
-    let fields = [
-        columns(line, 30, 38),
-        columns(line, 38, 46),
-        columns(line, 46, COORDINATES_END),
-    ];
+    let fields = [columns(line, 30, 38), columns(line, 38, 46), columns(line, 46, COORDINATES_END)];
     let Some(position) = import.position(number, fields)? else {
         return Ok(None);
     };
     let label = |bytes: &[u8]| {
-        if is_lower_case {
-            Name::new(bytes).to_uppercase()
-        } else {
-            Name::new(bytes)
-        }
+        if is_lower_case { Name::new(bytes).to_uppercase() } else { Name::new(bytes) }
     };
     let name = label(columns(line, 12, 16));
     let residue_name = label(columns(line, 17, 21));
     let (residue_number, insertion_code) = residue_number(import, number, line);
-    let occupancy = number::float(columns(line, 54, 60))
-        .filter(|value| value.is_finite())
-        .unwrap_or(1.0);
+    let occupancy = number::float(columns(line, 54, 60)).filter(|value| value.is_finite()).unwrap_or(1.0);
     let element = read_element(import, number, line, residue_name);
     Ok(Some(NewAtom {
         position,
@@ -271,9 +215,7 @@ fn read_atom<'a>(
 fn chain(line: &[u8]) -> &[u8] {
     match columns(line, 21, 22).trim_ascii() {
         // Old files number their lines here (1CRN  70): a digit where the element belongs tells.
-        [] if !columns(line, 76, 80).iter().any(u8::is_ascii_digit) => {
-            columns(line, 72, 76).trim_ascii()
-        }
+        [] if !columns(line, 76, 80).iter().any(u8::is_ascii_digit) => columns(line, 72, 76).trim_ascii(),
         chain => chain,
     }
 }
@@ -285,9 +227,7 @@ fn residue_number(import: &mut Import<'_>, number: u32, line: &[u8]) -> (i32, u8
     let insertion_code = if is_wide { 0 } else { letter(column(line, 26)) };
     let parsed = number::hybrid36(field).and_then(|value| i32::try_from(value).ok());
     if parsed.is_none() && !field.trim_ascii().is_empty() {
-        import
-            .report
-            .note(NoteKind::BadResidueNumber, number, || quote(field));
+        import.report.note(NoteKind::BadResidueNumber, number, || quote(field));
     }
     (parsed.unwrap_or(0), insertion_code)
 }
@@ -299,9 +239,7 @@ fn read_element(import: &mut Import<'_>, number: u32, line: &[u8], residue_name:
         return element;
     }
     let mut name = [b' '; 4];
-    name.iter_mut()
-        .zip(columns(line, 12, 16))
-        .for_each(|(to, &from)| *to = from);
+    name.iter_mut().zip(columns(line, 12, 16)).for_each(|(to, &from)| *to = from);
     let element = from_pdb_name(name, residue_name.as_str());
     let kind = match (element.is_known(), field) {
         (false, _) => NoteKind::ElementUnknown,
@@ -322,15 +260,78 @@ fn note_duplicates(serials: &[(u32, u32)], report: &mut Report) {
     if serials.windows(2).all(|pair| key(&pair[0]) < key(&pair[1])) {
         return;
     }
-    let mut sorted: Vec<(u32, u32)> = serials
-        .iter()
-        .filter(|&&(serial, _)| serial != NO_SERIAL)
-        .map(key)
-        .collect();
+    let mut sorted: Vec<(u32, u32)> = serials.iter().filter(|&&(serial, _)| serial != NO_SERIAL).map(key).collect();
     sorted.sort_unstable();
-    let count: usize = sorted
-        .chunk_by(|a, b| a == b)
-        .map(|group| if group.len() > 1 { group.len() } else { 0 })
-        .sum();
+    let count: usize = sorted.chunk_by(|a, b| a == b).map(|group| if group.len() > 1 { group.len() } else { 0 }).sum();
     report.note_many(NoteKind::DuplicateSerial, count as u32, String::new);
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::{LoadOptions, ModelChoice, NoteKind, Scene, SceneError};
+
+    fn load(text: &str, model: ModelChoice) -> Result<Scene, SceneError> {
+        Scene::from_bytes_with("t.pdb", text.as_bytes(), &LoadOptions { model })
+    }
+
+    fn first(text: &str) -> Scene {
+        load(text, ModelChoice::First).expect("a scene")
+    }
+
+    /// An atom line of element C in residue LIG.
+    fn atom(serial: &str, x: f64) -> String {
+        format!("HETATM{serial:>5}  C1  LIG A   1    {x:>8.3}   0.000   0.000  1.00  0.00           C\n")
+    }
+
+    #[test]
+    fn serials_past_99999_find_their_bonds() {
+        let text = format!("{}{}CONECT99999A0000A0000\n", atom("99999", 0.0), atom("A0000", 1.4));
+        assert_eq!(first(&text).molecule.bonds[0].order, 2);
+    }
+
+    #[test]
+    fn frames_that_end_with_end_are_models() {
+        let text = format!("{}END\n{}END\n", atom("1", 0.0), atom("1", 1.4));
+        let scene = first(&text);
+        assert_eq!(scene.molecule.atoms.len(), 1);
+        assert_eq!(scene.report.count(NoteKind::ModelSkipped), 1);
+        let all = load(&text, ModelChoice::All).expect("both frames").molecule;
+        assert_eq!((all.atoms.len(), all.bonds.len()), (2, 0));
+        let second = load(&text, ModelChoice::Number(2)).expect("the second frame").molecule;
+        assert_eq!(second.residues[0].model, 2);
+    }
+
+    #[test]
+    fn absurd_coordinates_are_refused_with_their_line() {
+        let text = atom("1", 0.0) + &atom("2", 0.0).replacen("   0.000", "    1e31", 1);
+        let message = load(&text, ModelChoice::First).expect_err("absurd").to_string();
+        assert_eq!(message, "t.pdb:2: x = \"1e31\" is no position in angstrom; correct it or delete the line");
+    }
+
+    #[test]
+    fn damaged_files_say_what_was_wrong_with_every_atom() {
+        let text = atom("1", 0.0).replacen("   0.000", "********", 1);
+        let message = load(&text, ModelChoice::First).expect_err("no atom").to_string();
+        assert!(message.contains("holds no atoms; every atom line is damaged: 1 atom skipped"));
+    }
+
+    #[test]
+    fn numbers_may_overflow_their_columns() {
+        let text = "ATOM  100000 CA  ALA A10000    ".to_string() + &atom("1", 0.0)[31..];
+        let scene = first(&text);
+        assert_eq!(scene.molecule.residues[0].number, 10_000);
+        assert_eq!(scene.molecule.residues[0].insertion_code, 0);
+        let hybrid = first(&atom("1", 0.0).replace("A   1 ", "AA00AB"));
+        let residue = hybrid.molecule.residues[0];
+        assert_eq!((residue.number, residue.insertion_code), (10_010, b'B'));
+    }
+
+    #[test]
+    fn segments_name_chains_that_have_no_letter() {
+        let line = atom("1", 0.0).replace(" A   1", "     1");
+        let with_segment = line.replace("          C\n", "     PROT C\n");
+        assert_eq!(first(&with_segment).molecule.chains, ["PROT"]);
+        let old = line.replace("          C\n", "     1CRN  70\n");
+        assert_eq!(first(&old).molecule.chains, [""]);
+    }
 }

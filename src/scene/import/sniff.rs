@@ -34,10 +34,7 @@ const MAGIC: &[(&[u8], &str)] = &[
     (b"\x7fELF", "a program"),
     (b"\xff\xfe", "a text in UTF-16"),
     (b"\xfe\xff", "a text in UTF-16"),
-    (
-        b"version https://git-lfs",
-        "a Git LFS pointer instead of the file itself",
-    ),
+    (b"version https://git-lfs", "a Git LFS pointer instead of the file itself"),
     (b"ply", "a PLY mesh"),
     (b"OFF", "an OFF mesh"),
     (b"solid ", "an STL mesh"),
@@ -69,10 +66,9 @@ const FOREIGN_EXTENSIONS: &[(&str, &str)] = &[
 
 /// Records that begin lines of PDB files and of nothing else that has them in its first lines.
 const PDB_RECORDS: &[&[u8]] = &[
-    b"HEADER", b"OBSLTE", b"TITLE ", b"SPLIT ", b"CAVEAT", b"COMPND", b"SOURCE", b"KEYWDS",
-    b"EXPDTA", b"AUTHOR", b"REVDAT", b"JRNL  ", b"REMARK", b"SEQRES", b"CRYST1", b"ORIGX1",
-    b"SCALE1", b"MODEL ", b"ATOM  ", b"HETATM", b"CONECT", b"HELIX ", b"SHEET ", b"SSBOND",
-    b"MASTER", b"USER  ",
+    b"HEADER", b"OBSLTE", b"TITLE ", b"SPLIT ", b"CAVEAT", b"COMPND", b"SOURCE", b"KEYWDS", b"EXPDTA", b"AUTHOR",
+    b"REVDAT", b"JRNL  ", b"REMARK", b"SEQRES", b"CRYST1", b"ORIGX1", b"SCALE1", b"MODEL ", b"ATOM  ", b"HETATM",
+    b"CONECT", b"HELIX ", b"SHEET ", b"SSBOND", b"MASTER", b"USER  ",
 ];
 
 /// The format of a file; `name` is its path and may be anything.
@@ -80,10 +76,7 @@ pub fn sniff(name: &str, bytes: &[u8]) -> Format {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let head = &bytes[..bytes.len().min(HEAD)];
     let start = head.trim_ascii_start();
-    if let Some((_, what)) = MAGIC
-        .iter()
-        .find(|(magic, _)| head.starts_with(magic) || start.starts_with(magic))
-    {
+    if let Some((_, what)) = MAGIC.iter().find(|(magic, _)| head.starts_with(magic) || start.starts_with(magic)) {
         return Format::Foreign(what);
     }
     let extension = Path::new(name)
@@ -95,53 +88,52 @@ pub fn sniff(name: &str, bytes: &[u8]) -> Format {
 
 /// What the first lines tell, if they do.
 fn by_lines(head: &[u8], extension: &str) -> Option<Format> {
-    let starts = |line: &[u8], word: &[u8]| {
-        line.get(..word.len())
-            .is_some_and(|start| start.eq_ignore_ascii_case(word))
-    };
+    let starts =
+        |line: &[u8], word: &[u8]| line.get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word));
+    let first = Lines::new(head).next().map(|(_, line)| line.trim_ascii()).unwrap_or_default();
+    let digits = first.strip_prefix(b"-").unwrap_or(first);
+    // Other formats begin with a number, too; their names tell.
+    let is_count = !digits.is_empty()
+        && digits.iter().all(u8::is_ascii_digit)
+        && !FOREIGN_EXTENSIONS.iter().any(|(foreign, _)| *foreign == extension);
     let mut is_pdb = false;
     for (number, line) in Lines::new(head) {
-        if starts(line, b"data_")
-            || starts(line, b"_atom_site")
-            || (number == 1 && starts(line, b"loop_"))
-        {
-            return Some(Format::Foreign("an mmCIF file"));
-        }
-        if number == 4
-            && [b"V2000", b"V3000"]
-                .iter()
-                .any(|version| line.trim_ascii_end().ends_with(*version))
-        {
+        let ends = |word: &[u8]| line.trim_ascii_end().ends_with(word);
+        if number == 4 && (ends(b"V2000") || ends(b"V3000")) {
             return Some(Format::Foreign("a MOL or SDF file"));
         }
-        is_pdb |= PDB_RECORDS.iter().any(|record| {
-            starts(line, record.trim_ascii_end())
-                && is_record_end(line.get(record.trim_ascii_end().len()))
-        });
+        if is_count {
+            // The comment of an XYZ file may begin with any word.
+            if number == 4 {
+                break;
+            }
+            continue;
+        }
+        let is_loop = number == 1 && starts(line, b"loop_");
+        if is_loop || starts(line, b"data_") || starts(line, b"_atom_site") {
+            return Some(Format::Foreign("an mmCIF file"));
+        }
+        // A CIF begins with its data block, so nothing after a first record can change this.
+        is_pdb = PDB_RECORDS.iter().any(|record| is_record(line, record.trim_ascii_end()));
+        if is_pdb {
+            break;
+        }
     }
-    if is_pdb {
-        return Some(if extension == "pqr" {
-            Format::Foreign("a PQR file")
-        } else {
-            Format::Pdb
-        });
+    match (is_count, is_pdb, extension) {
+        (true, ..) => Some(Format::Xyz),
+        (_, true, "pqr") => Some(Format::Foreign("a PQR file")),
+        (_, true, _) => Some(Format::Pdb),
+        _ => None,
     }
-    let first = head
-        .split(|&byte| byte == b'\n' || byte == b'\r')
-        .next()
-        .unwrap_or_default()
-        .trim_ascii();
-    let is_count = !first.is_empty()
-        && first
-            .strip_prefix(b"-")
-            .unwrap_or(first)
-            .iter()
-            .all(u8::is_ascii_digit);
-    // A molecule needs a name only where another format could begin with a number, too.
-    let is_free = !FOREIGN_EXTENSIONS
-        .iter()
-        .any(|(foreign, _)| *foreign == extension);
-    (is_count && is_free).then_some(Format::Xyz)
+}
+
+/// Whether a line begins with a record's name, all in upper or all in lower case: `Model` begins a sentence.
+fn is_record(line: &[u8], record: &[u8]) -> bool {
+    let Some((start, rest)) = line.split_at_checked(record.len()) else {
+        return false;
+    };
+    let is_one_case = !start.iter().any(u8::is_ascii_lowercase) || !start.iter().any(u8::is_ascii_uppercase);
+    start.eq_ignore_ascii_case(record) && is_one_case && is_record_end(rest.first())
 }
 
 /// Whether a record name ends here: the line ends, or a space or a digit (`HETATM10000`) follows.
@@ -167,32 +159,23 @@ mod tests {
 
     #[test]
     fn content_beats_the_extension() {
-        assert_eq!(
-            sniff("a.pdb", b"\x89PNG\r\n\x1a\n"),
-            Format::Foreign("a PNG picture")
-        );
-        assert_eq!(
-            sniff("a.pdb", b"data_1CRN\n#\nloop_\n_atom_site.id\nATOM 1 N"),
-            Format::Foreign("an mmCIF file")
-        );
+        assert_eq!(sniff("a.pdb", b"\x89PNG\r\n\x1a\n"), Format::Foreign("a PNG picture"));
+        assert_eq!(sniff("a.pdb", b"data_1CRN\n#\nloop_\n_atom_site.id\nATOM 1 N"), Format::Foreign("an mmCIF file"));
         assert_eq!(sniff("a.xyz", b"ATOM      1  N   THR"), Format::Pdb);
         assert_eq!(sniff("a.txt", b"atom      1  n   thr"), Format::Pdb);
         assert_eq!(sniff("molecule", b"  3 \n\nC 0 0 0"), Format::Xyz);
         assert_eq!(sniff("a.pdb", b"-24\n\nC 0 0 0"), Format::Xyz);
+        assert_eq!(sniff("a", b"1\nMODEL 1, data_set 2\nC 0 0 0"), Format::Xyz);
+        assert_eq!(sniff("a", b"7\n\n\n  1  0  0     0  0  0999 V2000"), Format::Foreign("a MOL or SDF file"));
+        assert_eq!(sniff("a.md", b"Model 1 is nicer\n"), Format::Unknown);
     }
 
     #[test]
     fn the_extension_helps_where_content_is_silent() {
         assert_eq!(sniff("a.PDB", b"hello"), Format::Pdb);
         assert_eq!(sniff("a.xyz", b"caffeine\n"), Format::Xyz);
-        assert_eq!(
-            sniff("a.cube", b"12\n"),
-            Format::Foreign("a Gaussian cube file")
-        );
-        assert_eq!(
-            sniff("a.pqr", b"ATOM      1  N   THR"),
-            Format::Foreign("a PQR file")
-        );
+        assert_eq!(sniff("a.cube", b"12\n"), Format::Foreign("a Gaussian cube file"));
+        assert_eq!(sniff("a.pqr", b"ATOM      1  N   THR"), Format::Foreign("a PQR file"));
         assert_eq!(sniff("a.docx", b"hello"), Format::Unknown);
         assert_eq!(sniff("", b""), Format::Unknown);
     }

@@ -17,17 +17,14 @@ use crate::scene::report::NoteKind;
 
 /// The first four words of a line that has so many.
 fn words(line: &[u8]) -> Option<[&[u8]; 4]> {
-    let mut words = line
-        .split(u8::is_ascii_whitespace)
-        .filter(|word| !word.is_empty());
+    let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
     Some([words.next()?, words.next()?, words.next()?, words.next()?])
 }
 
 /// Whether a line can only be an atom: a known element and three numbers.
 fn is_surely_atom(line: &[u8]) -> bool {
     words(line).is_some_and(|[symbol, fields @ ..]| {
-        from_xyz_symbol(symbol).is_known()
-            && fields.iter().all(|field| number::float(field).is_some())
+        from_xyz_symbol(symbol).is_known() && fields.iter().all(|field| number::float(field).is_some())
     })
 }
 
@@ -43,14 +40,8 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<Molecule, Sc
     let mut models = Models::new(import.options.model);
     let mut lines = Lines::new(bytes);
     let mut is_first = true;
-    while let Some((number, header)) = lines
-        .by_ref()
-        .find(|(_, line)| !line.trim_ascii().is_empty())
-    {
-        let count = match header
-            .split(u8::is_ascii_whitespace)
-            .find(|word| !word.is_empty())
-            .and_then(number::integer)
+    while let Some((number, header)) = lines.by_ref().find(|(_, line)| !line.trim_ascii().is_empty()) {
+        let count = match header.split(u8::is_ascii_whitespace).find(|word| !word.is_empty()).and_then(number::integer)
         {
             Some(count) => count,
             None if is_first => {
@@ -66,8 +57,7 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<Molecule, Sc
             }
         };
         let Ok(count) = u64::try_from(count) else {
-            let what =
-                format!("the number of atoms is {count}; write how many lines of atoms follow");
+            let what = format!("the number of atoms is {count}; write how many lines of atoms follow");
             return Err(import.malformed(number, what));
         };
         is_first = false;
@@ -75,26 +65,14 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<Molecule, Sc
         models.begin(None);
         // A frame without atoms is no model.
         match (count > 0).then(|| models.atom()).flatten() {
-            Some(model) => read_frame(
-                import,
-                &mut builder,
-                &mut lines,
-                Header {
-                    number,
-                    count,
-                    comment,
-                    model,
-                },
-            )?,
+            Some(model) => read_frame(import, &mut builder, &mut lines, Header { number, count, comment, model })?,
             None => skip(&mut lines, count),
         }
     }
     if let Some(error) = models.missing(import.file) {
         return Err(error);
     }
-    import
-        .report
-        .note_many(NoteKind::ModelSkipped, models.num_skipped(), String::new);
+    import.report.note_many(NoteKind::ModelSkipped, models.num_skipped(), String::new);
     builder.finish(&[], &mut import.report).ok_or_else(|| {
         let notes = import.report.to_string().trim_end().replace('\n', "; ");
         let hint = if notes.is_empty() {
@@ -102,10 +80,7 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<Molecule, Sc
         } else {
             format!("no line of it can be drawn: {notes}")
         };
-        SceneError::NoAtoms {
-            file: import.file.to_string(),
-            hint,
-        }
+        SceneError::NoAtoms { file: import.file.to_string(), hint }
     })
 }
 
@@ -119,13 +94,9 @@ fn skip(lines: &mut Lines<'_>, count: u64) {
 
 /// Notes what follows the last frame, unless it is blank.
 fn note_trailing(import: &mut Import<'_>, number: u32, line: &[u8], rest: Lines<'_>) {
-    import
-        .report
-        .note(NoteKind::TrailingText, number, || quote(line));
+    import.report.note(NoteKind::TrailingText, number, || quote(line));
     for (number, line) in rest.filter(|(_, line)| !line.trim_ascii().is_empty()) {
-        import
-            .report
-            .note(NoteKind::TrailingText, number, || quote(line));
+        import.report.note(NoteKind::TrailingText, number, || quote(line));
     }
 }
 
@@ -155,18 +126,14 @@ fn read_frame(
         }
         // No atom here: the frame ended early, or the line is damaged.
         let is_end = line.is_none_or(|(_, line)| {
-            line.trim_ascii().is_empty()
-                || only_word(line).is_some_and(|word| number::integer(word).is_some())
+            line.trim_ascii().is_empty() || only_word(line).is_some_and(|word| number::integer(word).is_some())
         });
         if let Some((number, line)) = line
             && !is_end
         {
             return Err(import.malformed(
                 number,
-                format!(
-                    "found {} where an atom belongs; write its symbol, x, y and z",
-                    quote(line)
-                ),
+                format!("found {} where an atom belongs; write its symbol, x, y and z", quote(line)),
             ));
         }
         if found + 1 == header.count
@@ -174,16 +141,16 @@ fn read_frame(
             && is_surely_atom(comment)
             && let Some(words) = words(comment)
         {
-            import.report.note(NoteKind::CountMended, number, || {
-                "an atom stands where the comment belongs".to_string()
-            });
+            import
+                .report
+                .note(NoteKind::CountMended, number, || "an atom stands where the comment belongs".to_string());
             read_atom(import, builder, number, words, header.model)?;
             *lines = before;
             return Ok(());
         }
-        let count = header.count;
+        let (count, follow) = (header.count, if found == 1 { "follows" } else { "follow" });
         let what = format!(
-            "announces {count} atoms, but {found} follow; write {found} if they are all, else the file was cut short"
+            "announces {count} atoms, but {found} {follow}; write {found} if they are all, else the file was cut short"
         );
         return Err(import.malformed(header.number, what));
     }
@@ -203,9 +170,7 @@ fn read_atom(
     };
     let element = from_xyz_symbol(symbol);
     if !element.is_known() {
-        import
-            .report
-            .note(NoteKind::ElementUnknown, number, || quote(symbol));
+        import.report.note(NoteKind::ElementUnknown, number, || quote(symbol));
     }
     builder.push(&NewAtom {
         position,
@@ -221,4 +186,72 @@ fn read_atom(
         model,
     });
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::{LoadOptions, ModelChoice, NoteKind, Scene, SceneError};
+
+    fn load(text: &str, model: ModelChoice) -> Result<Scene, SceneError> {
+        Scene::from_bytes_with("t.xyz", text.as_bytes(), &LoadOptions { model })
+    }
+
+    fn message(text: &str) -> String {
+        load(text, ModelChoice::First).expect_err("refused").to_string()
+    }
+
+    const TWO_FRAMES: &str = "1\none\nC 0 0 0\n2\ntwo\nO 0 0 0\nH 0.9 0 0\n";
+
+    #[test]
+    fn the_first_of_several_frames_is_drawn() {
+        let scene = load(TWO_FRAMES, ModelChoice::First).expect("a scene");
+        assert_eq!(scene.molecule.atoms.len(), 1);
+        assert_eq!(scene.report.count(NoteKind::ModelSkipped), 1);
+        let all = load(TWO_FRAMES, ModelChoice::All).expect("both").molecule;
+        assert_eq!((all.atoms.len(), all.bonds.len(), all.residues.len()), (3, 1, 2));
+        let second = load(TWO_FRAMES, ModelChoice::Number(2)).expect("the second").molecule;
+        assert_eq!(second.atoms.len(), 2);
+        let error = load(TWO_FRAMES, ModelChoice::Number(3)).expect_err("there are two");
+        assert_eq!(error.to_string(), "t.xyz: has no model 3; it has 2, from 1 to 2");
+    }
+
+    #[test]
+    fn lies_about_the_count_are_named() {
+        let end = "write 1 if they are all, else the file was cut short";
+        assert_eq!(message("9\n\nC 0 0 0\n"), format!("t.xyz:1: announces 9 atoms, but 1 follows; {end}"));
+        assert_eq!(
+            message("2\n\nC 0 0 0\n1\n\nC 0 0 0\n"),
+            format!("t.xyz:1: announces 2 atoms, but 1 follows; {end}")
+        );
+        assert!(message("99999999999999999999\n\nC 0 0 0\n").starts_with("t.xyz:1: found"));
+        assert!(message("0\n\n").starts_with("t.xyz: holds no atoms; its count"));
+        assert!(message("C 0 0 0\n").starts_with("t.xyz:1: found \"C 0 0 0\" where the number"));
+    }
+
+    #[test]
+    fn a_missing_comment_line_is_mended_also_before_another_frame() {
+        for text in ["2\nC 0 0 0\nC 1.4 0 0\n", "2\nC 0 0 0\nC 1.4 0 0\n1\n\nO 0 0 0\n"] {
+            let scene = load(text, ModelChoice::First).expect("mended");
+            assert_eq!(scene.molecule.atoms.len(), 2, "{text:?}");
+            assert_eq!(scene.report.count(NoteKind::CountMended), 1);
+        }
+    }
+
+    #[test]
+    fn damaged_rows_are_named() {
+        assert_eq!(
+            message("2\n\nC 0 0 0\nC 1 2\n"),
+            "t.xyz:4: found \"C 1 2\" where an atom belongs; write its symbol, x, y and z"
+        );
+        assert!(message("1\n\nC 1e31 0 0\n").starts_with("t.xyz:3: x = \"1e31\" is no position"));
+        assert!(message("1\n\nC nan 0 0\n").contains("no line of it can be drawn: 1 atom skipped"));
+    }
+
+    #[test]
+    fn every_line_end_will_do() {
+        for end in ["\n", "\r\n", "\r"] {
+            let scene = load(&TWO_FRAMES.replace('\n', end), ModelChoice::All).expect("a scene");
+            assert_eq!(scene.molecule.atoms.len(), 3);
+        }
+    }
 }
