@@ -3,7 +3,7 @@
 
 @group(0) @binding(0) var<uniform> view: View;
 @group(0) @binding(1) var<storage, read> atoms: array<Atom>;
-@group(0) @binding(3) var<storage, read> materials: array<Material>;
+@group(0) @binding(3) var<uniform> materials: array<Material, 512>;
 @group(0) @binding(4) var<storage, read> atom_order: array<u32>;
 
 struct AtomVarying {

@@ -4,7 +4,7 @@
 
 @group(0) @binding(0) var<uniform> view: View;
 @group(0) @binding(2) var<storage, read> connectors: array<Connector>;
-@group(0) @binding(3) var<storage, read> materials: array<Material>;
+@group(0) @binding(3) var<uniform> materials: array<Material, 512>;
 @group(0) @binding(5) var<storage, read> connector_order: array<u32>;
 
 struct ConnectorVarying {

@@ -11,7 +11,7 @@ struct Output {
 @group(0) @binding(0) var<uniform> view: View;
 @group(0) @binding(1) var<storage, read> atoms: array<Atom>;
 @group(0) @binding(2) var<storage, read> connectors: array<Connector>;
-@group(0) @binding(3) var<storage, read> materials: array<Material>;
+@group(0) @binding(3) var<uniform> materials: array<Material, 512>;
 @group(1) @binding(0) var<uniform> lights: Lights;
 @group(1) @binding(1) var<uniform> output: Output;
 @group(1) @binding(2) var visibility: texture_2d<u32>;

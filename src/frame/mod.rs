@@ -32,7 +32,7 @@ use visibility::{DEPTH_FORMAT, ID_FORMAT, Visibility, VisibilityPass};
 
 use crate::gpu::{Gpu, GpuError, GpuStruct, PassTimer, PassTimes, StructInfo, read_texture};
 use crate::scene::{Camera, LightPlace, Lighting, Sphere};
-use crate::shading::SHADERS;
+use crate::shading::{MAX_MATERIALS, SHADERS};
 
 /// Pictures of 8 bits a channel, sRGB values written by the shader.
 const OUTPUT_8: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -140,9 +140,13 @@ impl Renderer {
     /// [`GpuError::TooMany`] where objects exceed a storage binding.
     pub fn set_contents(&mut self, list: &DrawList, materials: &Materials) -> Result<(), GpuError> {
         let objects = ObjectBuffers::upload(&self.gpu, list)?;
-        let common = self.gpu.storage("materials", &materials.common)?;
-        let params: Result<Vec<_>, _> =
-            materials.params.values().map(|bytes| self.gpu.storage("shader materials", bytes)).collect();
+        let array = |bytes, size| self.gpu.uniform_array("materials", bytes, size, MAX_MATERIALS);
+        let common = array(bytemuck::cast_slice(&materials.common), size_of::<Material>())?;
+        let params: Result<Vec<_>, _> = materials
+            .params
+            .iter()
+            .map(|(&shader, bytes)| array(bytes, SHADERS[shader].material_info().size))
+            .collect();
         self.contents = Some(Contents { objects, materials: common, params: params?, needs: needs(list, materials) });
         Ok(())
     }

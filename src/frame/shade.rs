@@ -176,11 +176,6 @@ impl Shade {
             has_dynamic_offset: false,
             min_binding_size: None,
         };
-        let storage = wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Storage { read_only: true },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        };
         let texture = |sample_type, view_dimension| wgpu::BindingType::Texture {
             sample_type,
             view_dimension,
@@ -196,7 +191,7 @@ impl Shade {
         }
         let mut binding = FIRST_SHADER_BINDING;
         for shader in key.shaders.iter().map(|needs| &needs.shader) {
-            entries.push(entry(binding, storage));
+            entries.push(entry(binding, uniform));
             binding += 1;
             for resource in self.resources.get(shader).into_iter().flatten() {
                 let ty = match resource {

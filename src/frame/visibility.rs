@@ -87,7 +87,12 @@ impl Visibility {
                 },
                 storage(1, both),
                 storage(2, both),
-                storage(3, both),
+                wgpu::BindGroupLayoutEntry {
+                    binding: 3,
+                    visibility: both,
+                    ty: super::fullscreen::UNIFORM,
+                    count: None,
+                },
                 storage(4, wgpu::ShaderStages::VERTEX),
                 storage(5, wgpu::ShaderStages::VERTEX),
             ],

@@ -140,6 +140,24 @@ impl Gpu {
         Ok(self.buffer(what, bytemuck::cast_slice(items), size_of::<T>(), wgpu::BufferUsages::STORAGE))
     }
 
+    /// A uniform buffer that holds `count` elements, the first of them given by `bytes`.
+    ///
+    /// # Errors
+    /// [`GpuError::TooMany`] where more are given.
+    pub fn uniform_array(
+        &self,
+        what: &'static str,
+        bytes: &[u8],
+        element: usize,
+        count: usize,
+    ) -> Result<wgpu::Buffer, GpuError> {
+        if bytes.len() > element * count {
+            let given = bytes.len() / element;
+            return Err(GpuError::TooMany { what, count: given, bytes: bytes.len() as u64, limit: (element * count) as u64 });
+        }
+        Ok(self.buffer(what, bytes, element * count, wgpu::BufferUsages::UNIFORM))
+    }
+
     /// A uniform buffer with this content.
     pub fn uniform<T: bytemuck::Pod>(&self, label: &'static str, value: &T) -> wgpu::Buffer {
         self.buffer(label, bytemuck::bytes_of(value), size_of::<T>(), wgpu::BufferUsages::UNIFORM)

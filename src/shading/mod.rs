@@ -88,6 +88,10 @@ pub const SHADERS: &[&dyn ObjectShader] = &[&basic::Basic, &toon::Toon, &unlit::
 /// The shader of what nothing selects.
 pub const DEFAULT_SHADER: &str = "basic";
 
+/// Different materials in one frame: as many as fit a uniform buffer, which a software adapter reads far faster than
+/// storage.
+pub const MAX_MATERIALS: usize = 512;
+
 /// Place in [`SHADERS`] of a name.
 pub fn shader_index(name: &str) -> Option<usize> {
     SHADERS.iter().position(|shader| shader.name() == name)
@@ -110,7 +114,7 @@ pub fn optional_linear(color: Option<Srgba>) -> [f32; 4] {
 
 /// The WGSL text that declares a shader's material array.
 pub fn material_declaration(shader: &dyn ObjectShader) -> String {
-    format!("var<storage, read> {}_materials: array<{}>;", shader.name(), shader.material_info().name)
+    format!("var<uniform> {}_materials: array<{}, {MAX_MATERIALS}>;", shader.name(), shader.material_info().name)
 }
 
 /// Creates the texture or buffer of a resource.
