@@ -31,6 +31,29 @@ struct Material {
     index: u32,
 }
 
+// Objects lie in textures, row after row, one texel for each 16 bytes: storage buffers end at 128 MiB on many adapters,
+// and a software adapter reads them lane by lane.
+const OBJECT_ROW: u32 = 2048u;
+
+fn object_texel(objects: texture_2d<u32>, texel: u32) -> vec4<u32> {
+    return textureLoad(objects, vec2<u32>(texel % OBJECT_ROW, texel / OBJECT_ROW), 0);
+}
+
+fn atom_at(index: u32) -> Atom {
+    let place = object_texel(atoms, 2u * index);
+    let look = object_texel(atoms, 2u * index + 1u);
+    return Atom(bitcast<vec3<f32>>(place.xyz), bitcast<f32>(place.w), look.xy, look.z, look.w);
+}
+
+fn connector_at(index: u32) -> Connector {
+    let a = object_texel(connectors, 3u * index);
+    let b = object_texel(connectors, 3u * index + 1u);
+    let colors = object_texel(connectors, 3u * index + 2u);
+    return Connector(
+        bitcast<vec3<f32>>(a.xyz), bitcast<f32>(a.w), bitcast<vec3<f32>>(b.xyz), b.w, colors.xy, colors.zw,
+    );
+}
+
 // An id holds what a pixel sees: kind in the upper 3 bits, index in the lower 29; 0 is nothing.
 const KIND_NONE: u32 = 0u;
 const KIND_ATOM: u32 = 1u;

@@ -22,10 +22,10 @@ fn blocks(light_view: View, id: u32, origin: vec3<f32>, toward: vec3<f32>) -> bo
     let index = id & INDEX_MASK;
     var span = vec2<f32>(1.0, -1.0);
     if (id >> 29u) == KIND_ATOM {
-        let atom = atoms[index];
+        let atom = atom_at(index);
         span = sphere_span(ray, to_view(light_view, atom.position_world), atom.radius);
     } else {
-        let connector = connectors[index];
+        let connector = connector_at(index);
         let a = to_view(light_view, connector.a_world);
         let b = to_view(light_view, connector.b_world);
         span = cone_span(ray, a, b, connector.radius, connector.radius);

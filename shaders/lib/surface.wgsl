@@ -42,14 +42,14 @@ fn surface_at(ray: Ray, id: u32) -> Surface {
     var axis = vec3<f32>(0.0);
     var bend = 0.0;
     if ATOMS && (!CONNECTORS || (id >> 29u) == KIND_ATOM) {
-        let atom = atoms[index];
+        let atom = atom_at(index);
         let center = to_view(view, atom.position_world);
         t = first_beyond(sphere_span(ray, center, atom.radius), view.near);
         normal = sphere_normal(ray, t, center, atom.radius);
         s.base_color = unpack_linear(atom.color);
         bend = 1.0 / atom.radius;
     } else if CONNECTORS {
-        let connector = connectors[index];
+        let connector = connector_at(index);
         let a = to_view(view, connector.a_world);
         let b = to_view(view, connector.b_world);
         t = first_beyond(cone_span(ray, a, b, connector.radius, connector.radius), view.near);

@@ -2,8 +2,8 @@
 // Depth is -z_view in scene units, -1 where nothing is.
 
 @group(0) @binding(0) var<uniform> view: View;
-@group(0) @binding(1) var<storage, read> atoms: array<Atom>;
-@group(0) @binding(2) var<storage, read> connectors: array<Connector>;
+@group(0) @binding(1) var atoms: texture_2d<u32>;
+@group(0) @binding(2) var connectors: texture_2d<u32>;
 @group(1) @binding(0) var visibility: texture_2d<u32>;
 
 @vertex

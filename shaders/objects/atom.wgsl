@@ -2,7 +2,8 @@
 // Writes the id of the nearest surface and its depth; with HULL also the hull outline of the atom.
 
 @group(0) @binding(0) var<uniform> view: View;
-@group(0) @binding(1) var<storage, read> atoms: array<Atom>;
+@group(0) @binding(1) var atoms: texture_2d<u32>;
+@group(0) @binding(2) var connectors: texture_2d<u32>;
 @group(0) @binding(3) var<uniform> materials: array<Material, 512>;
 @group(0) @binding(4) var<storage, read> atom_order: array<u32>;
 
@@ -23,7 +24,7 @@ struct VisibilityOut {
 @vertex
 fn atom_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> AtomVarying {
     let index = atom_order[instance];
-    let atom = atoms[index];
+    let atom = atom_at(index);
     let center = to_view(view, atom.position_world);
     var hull = 0.0;
     if HULL {

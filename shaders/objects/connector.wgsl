@@ -3,7 +3,8 @@
 // cone whose radii are enlarged at each end by that end's own pixel size.
 
 @group(0) @binding(0) var<uniform> view: View;
-@group(0) @binding(2) var<storage, read> connectors: array<Connector>;
+@group(0) @binding(1) var atoms: texture_2d<u32>;
+@group(0) @binding(2) var connectors: texture_2d<u32>;
 @group(0) @binding(3) var<uniform> materials: array<Material, 512>;
 @group(0) @binding(5) var<storage, read> connector_order: array<u32>;
 
@@ -46,7 +47,7 @@ fn cylinder_hull_radius(point: vec3<f32>, axis: vec3<f32>, radius: f32, width_px
 @vertex
 fn connector_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> ConnectorVarying {
     let index = connector_order[instance];
-    let connector = connectors[index];
+    let connector = connector_at(index);
     let a = to_view(view, connector.a_world);
     let b = to_view(view, connector.b_world);
     var hull_a = 0.0;

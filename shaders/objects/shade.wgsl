@@ -9,8 +9,8 @@ struct Output {
 }
 
 @group(0) @binding(0) var<uniform> view: View;
-@group(0) @binding(1) var<storage, read> atoms: array<Atom>;
-@group(0) @binding(2) var<storage, read> connectors: array<Connector>;
+@group(0) @binding(1) var atoms: texture_2d<u32>;
+@group(0) @binding(2) var connectors: texture_2d<u32>;
 @group(0) @binding(3) var<uniform> materials: array<Material, 512>;
 @group(1) @binding(0) var<uniform> lights: Lights;
 @group(1) @binding(1) var<uniform> output: Output;

@@ -78,9 +78,9 @@ pub struct DrawList {
 /// The draw list in buffers, and the orders to draw it in.
 pub struct ObjectBuffers {
     /// All atoms.
-    pub atoms: wgpu::Buffer,
+    pub atoms: wgpu::TextureView,
     /// All connectors.
-    pub connectors: wgpu::Buffer,
+    pub connectors: wgpu::TextureView,
     /// How many atoms.
     pub num_atoms: u32,
     /// How many connectors.
@@ -97,8 +97,8 @@ impl ObjectBuffers {
     pub fn upload(gpu: &Gpu, list: &DrawList) -> Result<ObjectBuffers, GpuError> {
         let middle = |c: &Connector| ((Vec3::from(c.a_world) + Vec3::from(c.b_world)) * 0.5).to_array();
         Ok(ObjectBuffers {
-            atoms: gpu.storage("atoms", &list.atoms)?,
-            connectors: gpu.storage("connectors", &list.connectors)?,
+            atoms: upload(gpu, "atoms", &list.atoms)?,
+            connectors: upload(gpu, "connectors", &list.connectors)?,
             num_atoms: list.atoms.len() as u32,
             num_connectors: list.connectors.len() as u32,
             atom_centers: list.atoms.iter().map(|atom| atom.position_world).collect(),
@@ -110,6 +110,47 @@ impl ObjectBuffers {
     pub fn orders(&self, toward: Vec3) -> (Vec<u32>, Vec<u32>) {
         (order_by_depth(&self.atom_centers, toward), order_by_depth(&self.connector_centers, toward))
     }
+}
+
+/// Texels in a row of the object textures; `OBJECT_ROW` in `shaders/lib/objects.wgsl`.
+const OBJECT_ROW: u32 = 2048;
+
+/// Puts objects into a texture, one texel of four 32-bit words for each 16 bytes.
+fn upload<T: bytemuck::Pod>(gpu: &Gpu, what: &'static str, items: &[T]) -> Result<wgpu::TextureView, GpuError> {
+    let row_bytes = OBJECT_ROW as usize * 16;
+    let bytes: &[u8] = bytemuck::cast_slice(items);
+    let rows = bytes.len().div_ceil(row_bytes).max(1);
+    let limit = gpu.device.limits().max_texture_dimension_2d;
+    if rows > limit as usize {
+        let limit = u64::from(limit) * row_bytes as u64;
+        return Err(GpuError::TooMany { what, count: items.len(), bytes: bytes.len() as u64, limit });
+    }
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(what),
+        size: wgpu::Extent3d { width: OBJECT_ROW, height: rows as u32, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba32Uint,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    // Whole rows first, then what is left of the last one.
+    let whole = bytes.len() / row_bytes;
+    let write = |row: u32, width: u32, height: u32, bytes: &[u8]| {
+        if width > 0 && height > 0 {
+            let to =
+                wgpu::TexelCopyTextureInfo { origin: wgpu::Origin3d { x: 0, y: row, z: 0 }, ..texture.as_image_copy() };
+            let layout =
+                wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes as u32), rows_per_image: None };
+            let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+            gpu.queue.write_texture(to, bytes, layout, size);
+        }
+    };
+    let (full, rest) = bytes.split_at(whole * row_bytes);
+    write(0, OBJECT_ROW, whole as u32, full);
+    write(whole as u32, (rest.len() / 16) as u32, 1, rest);
+    Ok(texture.create_view(&Default::default()))
 }
 
 /// Depth is sorted into this many bins: fine enough for early rejection, and one pass whatever the count.

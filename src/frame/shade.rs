@@ -349,10 +349,10 @@ pub fn shade_module(key: &ShadeKey) -> Module {
 fn material_function(key: &ShadeKey) -> String {
     let source = |constant: Option<u32>, array: &str| match constant {
         Some(material) => format!("{material}u"),
-        None => format!("{array}[id & INDEX_MASK].material"),
+        None => format!("{array}_at(id & INDEX_MASK).material"),
     };
-    let atoms = source(key.atom_material, "atoms");
-    let connectors = source(key.connector_material, "connectors");
+    let atoms = source(key.atom_material, "atom");
+    let connectors = source(key.connector_material, "connector");
     let body = match (key.atoms, key.connectors) {
         (true, true) if atoms == connectors && key.atom_material.is_some() => format!("    return {atoms};\n"),
         (true, true) => format!(

@@ -72,6 +72,12 @@ impl Visibility {
             count: None,
         };
         let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
+        let objects = |binding| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: both,
+            ty: super::fullscreen::texture(wgpu::TextureSampleType::Uint),
+            count: None,
+        };
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("scene"),
             entries: &[
@@ -85,8 +91,8 @@ impl Visibility {
                     },
                     count: None,
                 },
-                storage(1, both),
-                storage(2, both),
+                objects(1),
+                objects(2),
                 wgpu::BindGroupLayoutEntry {
                     binding: 3,
                     visibility: both,
@@ -141,8 +147,8 @@ impl Visibility {
                         size: std::num::NonZeroU64::new(size_of::<View>() as u64),
                     }),
                 },
-                whole(1, &objects.atoms),
-                whole(2, &objects.connectors),
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&objects.atoms) },
+                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(&objects.connectors) },
                 whole(3, materials),
                 whole(4, &atom_order),
                 whole(5, &connector_order),

@@ -153,7 +153,12 @@ impl Gpu {
     ) -> Result<wgpu::Buffer, GpuError> {
         if bytes.len() > element * count {
             let given = bytes.len() / element;
-            return Err(GpuError::TooMany { what, count: given, bytes: bytes.len() as u64, limit: (element * count) as u64 });
+            return Err(GpuError::TooMany {
+                what,
+                count: given,
+                bytes: bytes.len() as u64,
+                limit: (element * count) as u64,
+            });
         }
         Ok(self.buffer(what, bytes, element * count, wgpu::BufferUsages::UNIFORM))
     }
