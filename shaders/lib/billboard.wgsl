@@ -3,7 +3,7 @@
 // Covers exactly the silhouette cone of a sphere: a square across its centre, turned to the eye.
 // The whole picture where the eye is in the sphere or close to it.
 fn sphere_quad(view: View, center: vec3<f32>, radius: f32, sign: vec2<f32>) -> vec4<f32> {
-    if view.orthographic > 0.5 {
+    if ORTHOGRAPHIC {
         return clip_from_view(view, center + vec3<f32>(sign * radius, 0.0));
     }
     let distance_squared = dot(center, center);
@@ -28,7 +28,7 @@ fn cylinder_quad(view: View, a: vec3<f32>, b: vec3<f32>, radius: f32, sign: vec2
     let height = length(axis_full);
     let axis = axis_full / height;
     let around = sqrt(0.25 * height * height + radius * radius);
-    if view.orthographic > 0.5 {
+    if ORTHOGRAPHIC {
         let flat = sqrt(max(1.0 - axis.z * axis.z, 0.0));
         if flat < 0.5 { return sphere_quad(view, middle, around, sign); }
         let side = vec3<f32>(-axis.y, axis.x, 0.0) / flat;

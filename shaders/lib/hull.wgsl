@@ -6,7 +6,7 @@
 // from the axis along the radius and by 1/cos across it.
 fn hull_radius(view: View, center: vec3<f32>, radius: f32, width_px: f32, width_world: f32) -> f32 {
     let wide = radius + width_world;
-    if view.orthographic > 0.5 {
+    if ORTHOGRAPHIC {
         return wide + width_px * view.pixel_view;
     }
     let distance = length(center);

@@ -1,9 +1,12 @@
-// The camera (or a light that looks at the scene) and the ray of a picture point.
+// The camera (or a light that looks at the scene) and the ray of a picture point. ORTHOGRAPHIC, a constant of each
+// pipeline, says which projection its own view has; `view.orthographic` says it of any view.
 // View space is right-handed, the eye at the origin looking along -z. `t` is -z_view: since every ray
 // direction has z = -1, the ray parameter of a hit is its depth.
 
 struct View {
     view_from_world: mat4x4<f32>,
+    // Place on the plane of half_extent = pixel position * xy + zw, the jitter included.
+    plane_from_px: vec4<f32>,
     // View units per unit of normalised device x, y: at depth 1 in perspective, everywhere in orthographic.
     half_extent: vec2<f32>,
     size_px: vec2<f32>,
@@ -31,13 +34,13 @@ struct Ray {
     direction: vec3<f32>,
 }
 
+// The ray of this sample for a fragment's position.
 fn ray_at(view: View, position_px: vec2<f32>) -> Ray {
-    let ndc = vec2<f32>(2.0, -2.0) * position_px / view.size_px + vec2<f32>(-1.0, 1.0);
-    let plane = ndc * view.half_extent;
-    return Ray(
-        vec3<f32>(plane * view.orthographic, 0.0),
-        vec3<f32>(plane * (1.0 - view.orthographic), -1.0),
-    );
+    let plane = position_px * view.plane_from_px.xy + view.plane_from_px.zw;
+    if ORTHOGRAPHIC {
+        return Ray(vec3<f32>(plane, 0.0), vec3<f32>(0.0, 0.0, -1.0));
+    }
+    return Ray(vec3<f32>(0.0), vec3<f32>(plane, -1.0));
 }
 
 // Change of the ray (origin or direction, whichever moves) across one sample's footprint, to the right and down.
@@ -49,12 +52,13 @@ fn ray_step_dy(view: View) -> vec3<f32> {
 }
 
 fn depth_value(view: View, t: f32) -> f32 {
-    return clamp(view.depth_from_t.x / t + view.depth_from_t.y + view.depth_from_t.z * t, 0.0, 1.0);
+    if ORTHOGRAPHIC { return view.depth_from_t.y + view.depth_from_t.z * t; }
+    return view.depth_from_t.x / t;
 }
 
 // Clip position of a view-space point. Its depth is set to the middle: fragments write their own.
 fn clip_from_view(view: View, position: vec3<f32>) -> vec4<f32> {
-    let w = mix(-position.z, 1.0, view.orthographic);
+    let w = select(-position.z, 1.0, ORTHOGRAPHIC);
     let jitter_ndc = view.jitter_px * vec2<f32>(2.0, -2.0) / view.size_px;
     let xy = position.xy / view.half_extent - jitter_ndc * w;
     return vec4<f32>(xy, 0.5 * w, w);

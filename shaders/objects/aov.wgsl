@@ -17,6 +17,6 @@ fn aov_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32
     if id == 0u || (id >> 29u) > KIND_CONNECTOR {
         return vec4<f32>(0.0, 0.0, 0.0, -1.0);
     }
-    let s = surface_at(ray_at(view, position.xy + view.jitter_px), id);
+    let s = surface_at(ray_at(view, position.xy), id);
     return vec4<f32>(s.normal_view, -s.position_view.z);
 }

@@ -44,18 +44,29 @@ fn atom_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) inst
 
 @fragment
 fn atom_fragment(in: AtomVarying) -> VisibilityOut {
-    let ray = ray_at(view, in.position.xy + view.jitter_px);
-    let t = first_beyond(sphere_span(ray, in.sphere.xyz, in.sphere.w), view.near);
-    if t > 0.0 {
-        return VisibilityOut(make_id(KIND_ATOM, in.index), depth_value(view, t));
-    }
-    if HULL && in.hull > 0.0 {
-        let span = sphere_span(ray, in.sphere.xyz, in.hull);
-        // Only the back faces, and only in front of the eye.
-        if span.x <= span.y && span.x > view.near {
-            return VisibilityOut(make_id(KIND_ATOM_HULL, in.index), depth_value(view, span.y));
+    let ray = ray_at(view, in.position.xy);
+    // Both the sphere and its hull share the point of closest approach.
+    let to_center = in.sphere.xyz - ray.origin;
+    let inverse = 1.0 / dot(ray.direction, ray.direction);
+    let middle = dot(to_center, ray.direction) * inverse;
+    let off = to_center - middle * ray.direction;
+    let off_squared = dot(off, off);
+    let left = in.sphere.w * in.sphere.w - off_squared;
+    let half = sqrt(max(left, 0.0) * inverse);
+    let t = select(middle + half, middle - half, middle - half > view.near);
+    var id = make_id(KIND_ATOM, in.index);
+    var depth = t;
+    var seen = left >= 0.0 && t > view.near;
+    if HULL {
+        // Only the back faces, and only in front of the eye; behind the sphere itself they never show.
+        let hull_left = in.hull * in.hull - off_squared;
+        let hull_half = sqrt(max(hull_left, 0.0) * inverse);
+        if !seen {
+            id = make_id(KIND_ATOM_HULL, in.index);
+            depth = middle + hull_half;
+            seen = hull_left >= 0.0 && middle - hull_half > view.near;
         }
     }
-    discard;
-    return VisibilityOut(0u, 0.0);
+    if !seen { discard; }
+    return VisibilityOut(id, depth_value(view, depth));
 }

@@ -26,7 +26,7 @@ struct VisibilityOut {
 // at its distance to the axis, so that distance, not the point's own, sets the angle.
 fn cylinder_hull_radius(point: vec3<f32>, axis: vec3<f32>, radius: f32, width_px: f32, width_world: f32) -> f32 {
     let wide = radius + width_world;
-    if view.orthographic > 0.5 {
+    if ORTHOGRAPHIC {
         return wide + width_px * view.pixel_view;
     }
     // Pixels across the axis at this point: its depth times the pixel, seen at the slant of the ray.
@@ -72,7 +72,7 @@ fn connector_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index)
 
 @fragment
 fn connector_fragment(in: ConnectorVarying) -> VisibilityOut {
-    let ray = ray_at(view, in.position.xy + view.jitter_px);
+    let ray = ray_at(view, in.position.xy);
     let t = first_beyond(cone_span(ray, in.a.xyz, in.b.xyz, in.radius, in.radius), view.near);
     if t > 0.0 {
         return VisibilityOut(make_id(KIND_CONNECTOR, in.index), depth_value(view, t));

@@ -27,7 +27,7 @@ fn shade_vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f
 fn shade_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let id = textureLoad(visibility, vec2<i32>(position.xy), 0).x;
     let material = material_of(id);
-    var color = shade_object(surface_at(ray_at(view, position.xy + view.jitter_px), id), material);
+    var color = shade_object(surface_at(ray_at(view, position.xy), id), material);
     if HULLS && (id >> 29u) > KIND_CONNECTOR {
         color = materials[material].hull_color.rgb;
     }

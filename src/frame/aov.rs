@@ -1,5 +1,7 @@
 //! Geometry AOVs: depth, view-space normal and id of the nearest surface at each pixel's centre.
 
+use std::collections::BTreeMap;
+
 use super::fullscreen;
 use super::visibility::{SceneBindings, Visibility};
 use crate::gpu::{Gpu, GpuError, Module};
@@ -11,11 +13,11 @@ pub const GEOMETRY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Floa
 /// The pipeline of the geometry AOVs, once it is asked for.
 #[derive(Default)]
 pub struct Aov {
-    pipeline: Option<(wgpu::BindGroupLayout, wgpu::RenderPipeline)>,
+    pipelines: BTreeMap<bool, (wgpu::BindGroupLayout, wgpu::RenderPipeline)>,
 }
 
 impl Aov {
-    /// Draws the geometry of what `ids` holds. Builds the pipeline first, where it is not there.
+    /// Draws the geometry of what `ids` holds, as the first bound view sees it. Builds the pipeline first, where it is not there.
     ///
     /// # Errors
     /// [`GpuError::Driver`] where the shader does not compile.
@@ -25,44 +27,48 @@ impl Aov {
         encoder: &mut wgpu::CommandEncoder,
         visibility: &Visibility,
         scene: &SceneBindings,
-        view_index: usize,
+        orthographic: bool,
         ids: &wgpu::TextureView,
         target: &wgpu::TextureView,
     ) -> Result<(), GpuError> {
-        if self.pipeline.is_none() {
+        if !self.pipelines.contains_key(&orthographic) {
             let layout = fullscreen::layout(gpu, "aov", &[fullscreen::texture(wgpu::TextureSampleType::Uint)]);
             let pipeline = fullscreen::pipeline(
                 gpu,
                 "aov",
-                &aov_module(),
+                &aov_module(orthographic),
                 ["aov_vertex", "aov_fragment"],
                 &[&visibility.layout, &layout],
                 GEOMETRY_FORMAT,
             )?;
-            self.pipeline = Some((layout, pipeline));
+            self.pipelines.insert(orthographic, (layout, pipeline));
         }
-        let Some((layout, pipeline)) = &self.pipeline else { return Ok(()) };
+        let Some((layout, pipeline)) = self.pipelines.get(&orthographic) else { return Ok(()) };
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("aov"),
             layout,
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(ids) }],
         });
-        let groups: &[(&wgpu::BindGroup, &[u32])] =
-            &[(&scene.group, &[SceneBindings::offset(view_index)]), (&group, &[])];
+        let groups: &[(&wgpu::BindGroup, &[u32])] = &[(&scene.group, &[SceneBindings::offset(0)]), (&group, &[])];
         fullscreen::draw(encoder, "aov", pipeline, groups, target, None);
         Ok(())
     }
 }
 
 /// The WGSL of the geometry AOVs.
-pub fn aov_module() -> Module {
+pub fn aov_module(orthographic: bool) -> Module {
     let mut module = Module::new(&[
         wgsl!("lib/view.wgsl"),
         wgsl!("lib/objects.wgsl"),
         wgsl!("lib/intersect.wgsl"),
         wgsl!("lib/surface.wgsl"),
     ]);
-    module.add_generated("aov options", "const ATOMS: bool = true;\nconst CONNECTORS: bool = true;".to_owned());
+    module.add_generated(
+        "aov options",
+        format!(
+            "const ORTHOGRAPHIC: bool = {orthographic};\nconst ATOMS: bool = true;\nconst CONNECTORS: bool = true;"
+        ),
+    );
     module.add(wgsl!("objects/aov.wgsl"));
     module
 }

@@ -27,6 +27,7 @@ use shadow::{ShadowMaps, ShadowPlan};
 pub use targets::TargetBytes;
 use targets::Targets;
 pub use view::{View, sample_offset_px};
+pub use visibility::VisibilityKey;
 pub use visibility::visibility_module;
 use visibility::{DEPTH_FORMAT, ID_FORMAT, Visibility, VisibilityPass};
 
@@ -174,15 +175,18 @@ impl Renderer {
             lights: input.lighting.lights.len().min(MAX_LIGHTS) as u32,
             point_lights: input.lighting.lights.iter().any(|light| matches!(light.place, LightPlace::Point { .. })),
             shadows: shadowed,
+            orthographic: input.camera.orthographic,
             encode: direct,
             ..contents.needs.clone()
         };
         let hulls = key.hulls;
 
         // Pipelines and targets that are not there yet.
-        self.pipelines_built += self.visibility.prepare(&gpu, &contents.objects, hulls)?;
-        if shadowed && hulls {
-            self.pipelines_built += self.visibility.prepare(&gpu, &contents.objects, false)?;
+        let seen = VisibilityKey { hulls, orthographic: input.camera.orthographic };
+        // Outlines cast no shadows.
+        let lit = |shadow: &ShadowView| VisibilityKey { hulls: false, orthographic: shadow.light.orthographic > 0.5 };
+        for key in std::iter::once(seen).chain(plan.views.iter().map(lit)) {
+            self.pipelines_built += self.visibility.prepare(&gpu, &contents.objects, key)?;
         }
         self.pipelines_built += self.shade.prepare(&gpu, &self.visibility, &key)?;
         if !direct {
@@ -216,13 +220,19 @@ impl Renderer {
         for (layer, index) in (0..plan.views.len()).zip(samples as usize..) {
             let Some(maps) = &maps else { break };
             let (map_ids, map_depth) = maps.layer(layer as u32);
-            let pass = VisibilityPass { name: "shadow", view: index, hulls: false, ids: &map_ids, depth: &map_depth };
+            let pass = VisibilityPass {
+                name: "shadow",
+                view: index,
+                key: lit(&plan.views[layer]),
+                ids: &map_ids,
+                depth: &map_depth,
+            };
             self.visibility.draw(&mut encoder, &scene, &contents.objects, &pass, &mut timer);
         }
         let clear = if direct { clear_value(input.background) } else { wgpu::Color::TRANSPARENT };
         let target = ShadeTarget { light: light.as_ref().unwrap_or(&output), depth: &depth, clear };
         for index in 0..samples as usize {
-            let pass = VisibilityPass { name: "visibility", view: index, hulls, ids: &ids, depth: &depth };
+            let pass = VisibilityPass { name: "visibility", view: index, key: seen, ids: &ids, depth: &depth };
             self.visibility.draw(&mut encoder, &scene, &contents.objects, &pass, &mut timer);
             self.shade.draw(&mut encoder, &key, &scene, index, &shade_group, &target, &mut timer);
             if (index + 1) % SAMPLES_PER_SUBMISSION == 0 && index + 1 < samples as usize {
@@ -277,7 +287,7 @@ impl Renderer {
         let geometry = gpu.target("geometry", input.size, 1, aov::GEOMETRY_FORMAT);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("aov") });
         let target = geometry.create_view(&Default::default());
-        self.aov.draw(&gpu, &mut encoder, &self.visibility, &scene, 0, &ids, &target)?;
+        self.aov.draw(&gpu, &mut encoder, &self.visibility, &scene, input.camera.orthographic, &ids, &target)?;
         gpu.queue.submit([encoder.finish()]);
         gpu.wait()?;
         let floats = |bytes: Vec<u8>| bytes.chunks_exact(4).map(bytemuck::pod_read_unaligned).collect::<Vec<f32>>();
@@ -346,6 +356,7 @@ fn needs(list: &DrawList, materials: &Materials) -> ShadeKey {
         lights: 0,
         point_lights: false,
         shadows: false,
+        orthographic: false,
         encode: false,
     }
 }

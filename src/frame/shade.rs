@@ -41,6 +41,8 @@ pub struct ShadeKey {
     pub point_lights: bool,
     /// Whether a light casts shadows.
     pub shadows: bool,
+    /// Whether the camera is orthographic.
+    pub orthographic: bool,
     /// Straight to 8-bit picture values, instead of adding up linear light.
     pub encode: bool,
 }
@@ -292,9 +294,9 @@ pub fn shade_module(key: &ShadeKey) -> Module {
         wgsl!("lib/encode.wgsl"),
     ]);
     let mut bindings = format!(
-        "const ENCODE: bool = {};\nconst ATOMS: bool = {};\nconst CONNECTORS: bool = {};\nconst HULLS: bool = {};\n\
+        "const ORTHOGRAPHIC: bool = {};\nconst ENCODE: bool = {};\nconst ATOMS: bool = {};\nconst CONNECTORS: bool = {};\nconst HULLS: bool = {};\n\
          const SHADOWS: bool = {};\nconst LIGHT_COUNT: u32 = {}u;\nconst POINT_LIGHTS: bool = {};\n",
-        key.encode, key.atoms, key.connectors, key.hulls, key.shadows, key.lights, key.point_lights
+        key.orthographic, key.encode, key.atoms, key.connectors, key.hulls, key.shadows, key.lights, key.point_lights
     );
     if key.shadows {
         bindings.push_str(

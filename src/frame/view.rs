@@ -11,6 +11,8 @@ gpu_struct! {
     pub struct View {
         /// From world to view space.
         pub view_from_world: [[f32; 4]; 4],
+        /// Place on the plane of half extents = pixel position * xy + zw.
+        pub plane_from_px: [f32; 4],
         /// Half the picture in view units, at depth 1 or everywhere.
         pub half_extent: [f32; 2],
         /// Picture size in pixels.
@@ -52,6 +54,7 @@ impl View {
             half_extent: camera.half_extent.to_array(),
             size_px: [size_px[0] as f32, size_px[1] as f32],
             jitter_px: [0.0; 2],
+            plane_from_px: plane_from_px(camera.half_extent, size_px, Vec2::ZERO),
             orthographic: if camera.orthographic { 1.0 } else { 0.0 },
             near,
             depth_from_t,
@@ -65,8 +68,11 @@ impl View {
 
     /// The same view for sample `index` of `count`: jittered within the pixel, filters turned.
     pub fn sample(&self, index: u32, count: u32) -> View {
+        let jitter_px = sample_offset_px(index, count);
+        let size_px = [self.size_px[0] as u32, self.size_px[1] as u32];
         View {
-            jitter_px: sample_offset_px(index, count).to_array(),
+            jitter_px: jitter_px.to_array(),
+            plane_from_px: plane_from_px(Vec2::from(self.half_extent), size_px, jitter_px),
             sample_rotation_rad: std::f32::consts::TAU * index as f32 / count as f32,
             sample_weight: 1.0 / count as f32,
             footprint_px: 1.0 / (count as f32).sqrt(),
@@ -78,6 +84,13 @@ impl View {
     pub fn matrix(&self) -> Mat4 {
         Mat4::from_cols_array_2d(&self.view_from_world)
     }
+}
+
+fn plane_from_px(half_extent: Vec2, size_px: [u32; 2], jitter_px: Vec2) -> [f32; 4] {
+    let flip = Vec2::new(1.0, -1.0);
+    let scale = 2.0 * flip * half_extent / Vec2::new(size_px[0] as f32, size_px[1] as f32);
+    let offset = jitter_px * scale - flip * half_extent;
+    [scale.x, scale.y, offset.x, offset.y]
 }
 
 /// Offset from the pixel's centre of sample `index` of `count`, each coordinate in -0.5..0.5.

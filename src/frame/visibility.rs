@@ -18,6 +18,15 @@ pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Bytes between two views in the view buffer: WebGPU's alignment of dynamic offsets.
 const VIEW_STRIDE: u64 = 256;
 
+/// What a visibility pipeline is built for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct VisibilityKey {
+    /// Whether outlines by enlarged back faces are drawn.
+    pub hulls: bool,
+    /// Whether the view is orthographic.
+    pub orthographic: bool,
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     Atom,
@@ -28,7 +37,7 @@ enum Kind {
 pub struct Visibility {
     /// Group 0 of every pass that reads the scene: view, objects, materials, orders.
     pub layout: wgpu::BindGroupLayout,
-    pipelines: BTreeMap<(Kind, bool), wgpu::RenderPipeline>,
+    pipelines: BTreeMap<(Kind, VisibilityKey), wgpu::RenderPipeline>,
 }
 
 /// One use of the pass.
@@ -37,8 +46,8 @@ pub struct VisibilityPass<'a> {
     pub name: &'static str,
     /// Which of the bound views sees.
     pub view: usize,
-    /// Whether outlines by enlarged back faces are drawn.
-    pub hulls: bool,
+    /// How it is drawn.
+    pub key: VisibilityKey,
     /// Where ids go.
     pub ids: &'a wgpu::TextureView,
     /// Where depths go.
@@ -157,24 +166,24 @@ impl Visibility {
         Ok(SceneBindings { group })
     }
 
-    /// Builds the pipelines that `objects` need, with hull outlines or without.
+    /// Builds the pipelines that `objects` need.
     ///
     /// # Errors
     /// [`GpuError::Driver`] where a shader does not compile.
-    pub fn prepare(&mut self, gpu: &Gpu, objects: &ObjectBuffers, hulls: bool) -> Result<u32, GpuError> {
+    pub fn prepare(&mut self, gpu: &Gpu, objects: &ObjectBuffers, key: VisibilityKey) -> Result<u32, GpuError> {
         let mut built = 0;
         for (kind, count) in [(Kind::Atom, objects.num_atoms), (Kind::Connector, objects.num_connectors)] {
-            if count > 0 && !self.pipelines.contains_key(&(kind, hulls)) {
-                let pipeline = self.build(gpu, kind, hulls)?;
-                self.pipelines.insert((kind, hulls), pipeline);
+            if count > 0 && !self.pipelines.contains_key(&(kind, key)) {
+                let pipeline = self.build(gpu, kind, key)?;
+                self.pipelines.insert((kind, key), pipeline);
                 built += 1;
             }
         }
         Ok(built)
     }
 
-    fn build(&self, gpu: &Gpu, kind: Kind, hulls: bool) -> Result<wgpu::RenderPipeline, GpuError> {
-        let module = visibility_module(kind == Kind::Atom, hulls).compile(gpu, "visibility")?;
+    fn build(&self, gpu: &Gpu, kind: Kind, key: VisibilityKey) -> Result<wgpu::RenderPipeline, GpuError> {
+        let module = visibility_module(kind == Kind::Atom, key).compile(gpu, "visibility")?;
         let (vertex, fragment) = match kind {
             Kind::Atom => ("atom_vertex", "atom_fragment"),
             Kind::Connector => ("connector_vertex", "connector_fragment"),
@@ -245,7 +254,7 @@ impl Visibility {
         pass.set_bind_group(0, &bindings.group, &[SceneBindings::offset(to.view)]);
         for (kind, count) in [(Kind::Atom, objects.num_atoms), (Kind::Connector, objects.num_connectors)] {
             if count > 0
-                && let Some(pipeline) = self.pipelines.get(&(kind, to.hulls))
+                && let Some(pipeline) = self.pipelines.get(&(kind, to.key))
             {
                 pass.set_pipeline(pipeline);
                 pass.draw(0..4, 0..count);
@@ -255,7 +264,7 @@ impl Visibility {
 }
 
 /// The WGSL of the atoms' or connectors' visibility.
-pub fn visibility_module(atoms: bool, hulls: bool) -> Module {
+pub fn visibility_module(atoms: bool, key: VisibilityKey) -> Module {
     let mut module = Module::new(&[
         wgsl!("lib/view.wgsl"),
         wgsl!("lib/objects.wgsl"),
@@ -263,7 +272,10 @@ pub fn visibility_module(atoms: bool, hulls: bool) -> Module {
         wgsl!("lib/hull.wgsl"),
         wgsl!("lib/billboard.wgsl"),
     ]);
-    module.add_generated("visibility options", format!("const HULL: bool = {hulls};"));
+    module.add_generated(
+        "visibility options",
+        format!("const HULL: bool = {};\nconst ORTHOGRAPHIC: bool = {};", key.hulls, key.orthographic),
+    );
     module.add(if atoms { wgsl!("objects/atom.wgsl") } else { wgsl!("objects/connector.wgsl") });
     module
 }
