@@ -6,6 +6,7 @@ mod aov;
 mod fullscreen;
 mod lights;
 pub mod objects;
+mod occlusion;
 mod resolve;
 mod shade;
 mod shadow;
@@ -19,6 +20,7 @@ use std::sync::Arc;
 pub use aov::aov_module;
 pub use lights::{Light, Lights, MAX_LIGHTS};
 use objects::{DrawList, Material, ObjectBuffers};
+use occlusion::Reach;
 pub use resolve::resolve_module;
 pub use shade::{Output, ShadeKey, ShaderNeeds, shade_module};
 use shade::{Shade, ShadeInputs, ShadeTarget};
@@ -64,7 +66,16 @@ pub struct Materials {
 
 impl Materials {
     fn has_hulls(&self) -> bool {
-        self.common.iter().any(|material| material.hull_px + material.hull_world > 0.0)
+        let Reach { px, world } = self.reach();
+        px + world > 0.0
+    }
+
+    /// The widest hull outline.
+    fn reach(&self) -> Reach {
+        self.common.iter().fold(Reach::default(), |reach, material| Reach {
+            px: reach.px.max(material.hull_px),
+            world: reach.world.max(material.hull_world),
+        })
     }
 }
 
@@ -103,6 +114,8 @@ struct Contents {
     params: Vec<wgpu::Buffer>,
     /// The needs of the objects; those of lights and output are filled in for each frame.
     needs: ShadeKey,
+    /// What outlines add to the objects.
+    reach: Reach,
 }
 
 /// Draws frames of one scene in one style.
@@ -148,7 +161,13 @@ impl Renderer {
             .iter()
             .map(|(&shader, bytes)| array(bytes, SHADERS[shader].material_info().size))
             .collect();
-        self.contents = Some(Contents { objects, materials: common, params: params?, needs: needs(list, materials) });
+        self.contents = Some(Contents {
+            objects,
+            materials: common,
+            params: params?,
+            needs: needs(list, materials),
+            reach: materials.reach(),
+        });
         Ok(())
     }
 
@@ -196,12 +215,15 @@ impl Renderer {
             shadowed.then(|| ShadowMaps::new(&gpu, plan.views[0].light.size_px[0] as u32, plan.views.len() as u32));
         self.targets.fit(&gpu, input.size, if input.wide { OUTPUT_16 } else { OUTPUT_8 }, !direct);
 
-        // Uniforms and bindings: a view for each sample, then one for each shadow map.
+        // Uniforms and bindings: a view for each sample, and the view of each light that casts shadows.
         let view = View::new(input.camera, input.size);
-        let mut views: Vec<View> = (0..samples).map(|index| view.sample(index, samples)).collect();
-        views.extend(plan.views.iter().map(|shadow| shadow.light));
-        let toward = input.camera.view_from_world.row(2).truncate() * -1.0;
-        let scene = self.visibility.bind(&gpu, &contents.objects, &contents.materials, &views, toward)?;
+        let views: Vec<View> = (0..samples).map(|index| view.sample(index, samples)).collect();
+        let bind =
+            |views: &[View], reach| self.visibility.bind(&gpu, &contents.objects, &contents.materials, views, reach);
+        let scene = bind(&views, contents.reach)?;
+        let lit_scenes: Result<Vec<_>, _> =
+            plan.views.iter().map(|shadow| bind(&[shadow.light], Reach::default())).collect();
+        let lit_scenes = lit_scenes?;
         let [ids, depth, output] = self.targets.views()?;
         let light = self.targets.light_view();
         let shadow_uniform = plan.uniform();
@@ -217,23 +239,17 @@ impl Renderer {
 
         // The frame, in submissions of a few samples each, so that progress can be told.
         let mut encoder = frame_encoder(&gpu);
-        for (layer, index) in (0..plan.views.len()).zip(samples as usize..) {
+        for (layer, (shadow, lit_scene)) in (0..).zip(plan.views.iter().zip(&lit_scenes)) {
             let Some(maps) = &maps else { break };
-            let (map_ids, map_depth) = maps.layer(layer as u32);
-            let pass = VisibilityPass {
-                name: "shadow",
-                view: index,
-                key: lit(&plan.views[layer]),
-                ids: &map_ids,
-                depth: &map_depth,
-            };
-            self.visibility.draw(&mut encoder, &scene, &contents.objects, &pass, &mut timer);
+            let (map_ids, map_depth) = maps.layer(layer);
+            let pass = VisibilityPass { name: "shadow", view: 0, key: lit(shadow), ids: &map_ids, depth: &map_depth };
+            self.visibility.draw(&mut encoder, lit_scene, &pass, &mut timer);
         }
         let clear = if direct { clear_value(input.background) } else { wgpu::Color::TRANSPARENT };
         let target = ShadeTarget { light: light.as_ref().unwrap_or(&output), depth: &depth, clear };
         for index in 0..samples as usize {
             let pass = VisibilityPass { name: "visibility", view: index, key: seen, ids: &ids, depth: &depth };
-            self.visibility.draw(&mut encoder, &scene, &contents.objects, &pass, &mut timer);
+            self.visibility.draw(&mut encoder, &scene, &pass, &mut timer);
             self.shade.draw(&mut encoder, &key, &scene, index, &shade_group, &target, &mut timer);
             if (index + 1) % SAMPLES_PER_SUBMISSION == 0 && index + 1 < samples as usize {
                 gpu.queue.submit([std::mem::replace(&mut encoder, frame_encoder(&gpu)).finish()]);
@@ -281,8 +297,7 @@ impl Renderer {
             return Ok(Aovs { geometry: Vec::new(), ids: Vec::new(), color: Vec::new() });
         };
         let view = View::new(input.camera, input.size);
-        let toward = input.camera.view_from_world.row(2).truncate() * -1.0;
-        let scene = self.visibility.bind(&gpu, &contents.objects, &contents.materials, &[view], toward)?;
+        let scene = self.visibility.bind(&gpu, &contents.objects, &contents.materials, &[view], contents.reach)?;
         let [ids, _, _] = self.targets.views()?;
         let geometry = gpu.target("geometry", input.size, 1, aov::GEOMETRY_FORMAT);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("aov") });

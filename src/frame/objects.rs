@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::occlusion::Ball;
 use crate::gpu::{Gpu, GpuError};
 use crate::gpu_struct;
 
@@ -85,8 +86,10 @@ pub struct ObjectBuffers {
     pub num_atoms: u32,
     /// How many connectors.
     pub num_connectors: u32,
-    atom_centers: Vec<[f32; 3]>,
-    connector_centers: Vec<[f32; 3]>,
+    /// Spheres around the atoms.
+    pub atom_balls: Vec<Ball>,
+    /// Spheres around the connectors.
+    pub connector_balls: Vec<Ball>,
 }
 
 impl ObjectBuffers {
@@ -95,20 +98,19 @@ impl ObjectBuffers {
     /// # Errors
     /// [`GpuError::TooMany`] beyond the largest storage binding.
     pub fn upload(gpu: &Gpu, list: &DrawList) -> Result<ObjectBuffers, GpuError> {
-        let middle = |c: &Connector| ((Vec3::from(c.a_world) + Vec3::from(c.b_world)) * 0.5).to_array();
+        let atom_ball = |atom: &Atom| Ball { center: Vec3::from(atom.position_world), radius: atom.radius };
+        let connector_ball = |connector: &Connector| {
+            let (a, b) = (Vec3::from(connector.a_world), Vec3::from(connector.b_world));
+            Ball { center: (a + b) * 0.5, radius: 0.5 * a.distance(b) + connector.radius }
+        };
         Ok(ObjectBuffers {
             atoms: upload(gpu, "atoms", &list.atoms)?,
             connectors: upload(gpu, "connectors", &list.connectors)?,
             num_atoms: list.atoms.len() as u32,
             num_connectors: list.connectors.len() as u32,
-            atom_centers: list.atoms.iter().map(|atom| atom.position_world).collect(),
-            connector_centers: list.connectors.iter().map(middle).collect(),
+            atom_balls: list.atoms.iter().map(atom_ball).collect(),
+            connector_balls: list.connectors.iter().map(connector_ball).collect(),
         })
-    }
-
-    /// Orders of atoms and connectors, nearest first for `toward` (the direction of the view, world space).
-    pub fn orders(&self, toward: Vec3) -> (Vec<u32>, Vec<u32>) {
-        (order_by_depth(&self.atom_centers, toward), order_by_depth(&self.connector_centers, toward))
     }
 }
 
@@ -151,51 +153,4 @@ fn upload<T: bytemuck::Pod>(gpu: &Gpu, what: &'static str, items: &[T]) -> Resul
     write(0, OBJECT_ROW, whole as u32, full);
     write(whole as u32, (rest.len() / 16) as u32, 1, rest);
     Ok(texture.create_view(&Default::default()))
-}
-
-/// Depth is sorted into this many bins: fine enough for early rejection, and one pass whatever the count.
-const DEPTH_BINS: usize = 2048;
-
-/// Indices of `centers`, nearest first along `toward`, exact to one part in [`DEPTH_BINS`]; linear in their number.
-fn order_by_depth(centers: &[[f32; 3]], toward: Vec3) -> Vec<u32> {
-    let depths: Vec<f32> = centers.iter().map(|center| Vec3::from(*center).dot(toward)).collect();
-    let (low, high) = depths.iter().fold((f32::MAX, f32::MIN), |(low, high), &depth| (low.min(depth), high.max(depth)));
-    let scale = (DEPTH_BINS - 1) as f32 / (high - low).max(f32::MIN_POSITIVE);
-    let bin = |depth: f32| (((depth - low) * scale) as usize).min(DEPTH_BINS - 1);
-    let mut starts = vec![0u32; DEPTH_BINS + 1];
-    for &depth in &depths {
-        starts[bin(depth) + 1] += 1;
-    }
-    for index in 1..starts.len() {
-        starts[index] += starts[index - 1];
-    }
-    let mut order = vec![0u32; centers.len()];
-    for (index, &depth) in depths.iter().enumerate() {
-        let slot = &mut starts[bin(depth)];
-        order[*slot as usize] = index as u32;
-        *slot += 1;
-    }
-    order
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_order_is_a_permutation_and_nearest_first() {
-        let centers: Vec<[f32; 3]> = (0..1000).map(|i| [0.0, 0.0, -((i * 7919 % 1000) as f32)]).collect();
-        let order = order_by_depth(&centers, Vec3::NEG_Z);
-        let mut sorted = order.clone();
-        sorted.sort_unstable();
-        assert!(sorted.iter().enumerate().all(|(i, &v)| i as u32 == v));
-        let depths: Vec<f32> = order.iter().map(|&i| -centers[i as usize][2]).collect();
-        assert!(depths.windows(2).all(|pair| pair[1] >= pair[0] - 1000.0 / DEPTH_BINS as f32));
-    }
-
-    #[test]
-    fn equal_depths_are_all_kept() {
-        assert_eq!(order_by_depth(&[[1.0, 2.0, 3.0]; 5], Vec3::Z), [0, 1, 2, 3, 4]);
-        assert!(order_by_depth(&[], Vec3::Z).is_empty());
-    }
 }

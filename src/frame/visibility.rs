@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::objects::ObjectBuffers;
+use super::occlusion::{self, Reach};
 use super::view::View;
 use crate::gpu::{Gpu, GpuError, Module, PassTimer};
 use crate::wgsl;
@@ -58,6 +59,8 @@ pub struct VisibilityPass<'a> {
 pub struct SceneBindings {
     /// To bind at group 0 with a [`SceneBindings::offset`].
     pub group: wgpu::BindGroup,
+    /// Atoms and connectors that are drawn; the others are hidden.
+    pub num_drawn: [u32; 2],
 }
 
 impl SceneBindings {
@@ -115,7 +118,7 @@ impl Visibility {
         Visibility { layout, pipelines: BTreeMap::new() }
     }
 
-    /// Binds objects, materials and views for one frame. `toward` is the view's direction in world space.
+    /// Binds objects, materials and the views of one eye; `reach` is what outlines add to the objects there.
     ///
     /// # Errors
     /// [`GpuError::TooMany`] where the orders exceed a binding.
@@ -125,7 +128,7 @@ impl Visibility {
         objects: &ObjectBuffers,
         materials: &wgpu::Buffer,
         views: &[View],
-        toward: glam::Vec3,
+        reach: Reach,
     ) -> Result<SceneBindings, GpuError> {
         let mut bytes = vec![0u8; views.len() * VIEW_STRIDE as usize];
         for (slot, view) in bytes.chunks_exact_mut(VIEW_STRIDE as usize).zip(views) {
@@ -138,7 +141,10 @@ impl Visibility {
             mapped_at_creation: false,
         });
         gpu.queue.write_buffer(&view_buffer, 0, &bytes);
-        let (atom_order, connector_order) = objects.orders(toward);
+        let cull = gpu.info.device_type == wgpu::DeviceType::Cpu;
+        let (atom_order, connector_order) =
+            occlusion::orders(&views[0], &objects.atom_balls, &objects.connector_balls, reach, cull);
+        let num_drawn = [atom_order.len() as u32, connector_order.len() as u32];
         let atom_order = gpu.storage("atom order", &atom_order)?;
         let connector_order = gpu.storage("connector order", &connector_order)?;
         fn whole(binding: u32, buffer: &wgpu::Buffer) -> wgpu::BindGroupEntry<'_> {
@@ -163,7 +169,7 @@ impl Visibility {
                 whole(5, &connector_order),
             ],
         });
-        Ok(SceneBindings { group })
+        Ok(SceneBindings { group, num_drawn })
     }
 
     /// Builds the pipelines that `objects` need.
@@ -227,7 +233,6 @@ impl Visibility {
         &self,
         encoder: &mut wgpu::CommandEncoder,
         bindings: &SceneBindings,
-        objects: &ObjectBuffers,
         to: &VisibilityPass<'_>,
         timer: &mut Option<PassTimer>,
     ) {
@@ -252,7 +257,7 @@ impl Visibility {
             multiview_mask: None,
         });
         pass.set_bind_group(0, &bindings.group, &[SceneBindings::offset(to.view)]);
-        for (kind, count) in [(Kind::Atom, objects.num_atoms), (Kind::Connector, objects.num_connectors)] {
+        for (kind, count) in [Kind::Atom, Kind::Connector].into_iter().zip(bindings.num_drawn) {
             if count > 0
                 && let Some(pipeline) = self.pipelines.get(&(kind, to.key))
             {
