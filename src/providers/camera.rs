@@ -6,7 +6,7 @@ use crate::config;
 use crate::scene::{Camera, Sphere};
 
 /// The scene's sphere fills this share of the shorter side of the picture.
-const FILL: f32 = 0.95;
+const FILL: f32 = 0.98;
 
 /// Answers what the camera sees.
 #[derive(Debug, Clone)]
@@ -171,7 +171,7 @@ mod tests {
                     let sine = 5.0 / -center.z;
                     sine / (1.0 - sine * sine).sqrt() / shorter
                 };
-                assert!((0.85..=1.0).contains(&reach), "{orthographic} {size:?}: {reach}");
+                assert!((0.9..=1.0).contains(&reach), "{orthographic} {size:?}: {reach}");
                 assert!(camera.near > 0.0 && camera.near < -center.z - 5.0 && camera.far > -center.z + 5.0);
             }
         }
