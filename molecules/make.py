@@ -68,6 +68,17 @@ def centred(atoms):
     return [(symbol, sub(p, mean)) for symbol, p in atoms]
 
 
+def turned(atoms, about_y, about_x):
+    """Turned by two angles in degrees, so that nothing hides behind its neighbour in the default view along -z."""
+    (cy, sy), (cx, sx) = [(math.cos(math.radians(a)), math.sin(math.radians(a))) for a in (about_y, about_x)]
+
+    def turn(p):
+        x, z = cy * p[0] + sy * p[2], cy * p[2] - sy * p[0]
+        return (x, cx * p[1] - sx * z, sx * p[1] + cx * z)
+
+    return [(symbol, turn(p)) for symbol, p in atoms]
+
+
 def xyz(name, comment, atoms):
     rows = [f"{s:<2}" + "".join(number(v, 12, 5) for v in p) for s, p in centred(atoms)]
     return name + ".xyz", "\n".join([str(len(atoms)), comment, *rows]) + "\n"
@@ -123,7 +134,7 @@ def arsenic_trioxide():
     for axis in range(3):
         for sign in (1, -1):
             atoms.append(("O", tuple(sign * d if i == axis else 0.0 for i in range(3))))
-    return xyz("arsenic_trioxide", "As4O6; As-O 1.78 A, As-O-As 128 deg from Hampson and Stosick, J. Am. Chem. Soc. 1938, 60, 1814", atoms)
+    return xyz("arsenic_trioxide", "As4O6; As-O 1.78 A, As-O-As 128 deg from Hampson and Stosick, J. Am. Chem. Soc. 1938, 60, 1814", turned(atoms, 24, 16))
 
 
 @molecule
@@ -170,7 +181,7 @@ def magnesium():
             # Inside a hexagon of two cells: all three lattice coordinates are at most 2.
             if max(abs(u), abs(v), abs(u + v)) <= 2 + 1e-9:
                 atoms.append(("Mg", (a * (u + v / 2), a * v * math.sqrt(3) / 2, c / 2 * layer)))
-    return xyz("magnesium", "magnesium metal; a = 3.2094, c = 5.2108 A from Walker and Marezio, Acta Metall. 1959, 7, 769", atoms)
+    return xyz("magnesium", "magnesium metal; a = 3.2094, c = 5.2108 A from Walker and Marezio, Acta Metall. 1959, 7, 769", turned(atoms, 17, -62))
 
 
 TETRAHEDRON = [unit(p) for p in [(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)]]
@@ -180,7 +191,7 @@ TETRAHEDRON = [unit(p) for p in [(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1
 def methane():
     """Hirota, J. Mol. Spectrosc. 1979, 77, 213: equilibrium C-H 1.087."""
     atoms = [("C", (0, 0, 0))] + [("H", scale(p, 1.087)) for p in TETRAHEDRON]
-    return xyz("methane", "methane; C-H 1.087 A from Hirota, J. Mol. Spectrosc. 1979, 77, 213", atoms)
+    return xyz("methane", "methane; C-H 1.087 A from Hirota, J. Mol. Spectrosc. 1979, 77, 213", turned(atoms, 20, 12))
 
 
 @molecule
@@ -202,7 +213,7 @@ def ammonia():
     for k in range(3):
         turn = math.radians(120 * k)
         atoms.append(("H", (ring * math.sin(turn), -height, ring * math.cos(turn))))
-    return xyz("ammonia", "ammonia; 1.012 A and 106.67 deg from Benedict and Plyler, Can. J. Phys. 1957, 35, 1235", atoms)
+    return xyz("ammonia", "ammonia; 1.012 A and 106.67 deg from Benedict and Plyler, Can. J. Phys. 1957, 35, 1235", turned(atoms, 25, 22))
 
 
 @molecule
@@ -287,7 +298,7 @@ def diamond():
         for s in steps:
             if add(p, scale(s, kept[p])) not in kept:
                 atoms.append(("H", add(position(p), scale(unit(s), 1.09 * kept[p]))))
-    return xyz("diamond", "hydrogenated diamond cluster; a = 3.5668 A from Straumanis and Aka, J. Am. Chem. Soc. 1951, 73, 5643", atoms)
+    return xyz("diamond", "hydrogenated diamond cluster; a = 3.5668 A from Straumanis and Aka, J. Am. Chem. Soc. 1951, 73, 5643", turned(atoms, 14, 10))
 
 
 @molecule
@@ -295,7 +306,7 @@ def sodium_chloride():
     """A cube of 4 x 4 x 4 ions. CRC Handbook of Chemistry and Physics, "Crystal ionic structures": halite, a = 5.6402."""
     half = 5.6402 / 2
     atoms = [("Na" if sum(p) % 2 == 0 else "Cl", scale(p, half)) for p in product(range(4), repeat=3)]
-    return xyz("sodium_chloride", "sodium chloride, rock salt structure; a = 5.6402 A from the CRC Handbook of Chemistry and Physics", atoms)
+    return xyz("sodium_chloride", "sodium chloride, rock salt structure; a = 5.6402 A from the CRC Handbook of Chemistry and Physics", turned(atoms, 29, 21))
 
 
 @molecule
@@ -312,7 +323,7 @@ def nanotube():
         for x, y in [(0, 0), (1, 0), (1.5, 0.5), (2.5, 0.5)]:
             turn = (3 * unit_cell + x) * bond / radius
             atoms.append(("C", (radius * math.cos(turn), along * (cell + y), radius * math.sin(turn))))
-    return xyz("nanotube", "(5,5) carbon nanotube; C-C 1.42 A along the wall from Saito et al., Physical Properties of Carbon Nanotubes, 1998", atoms)
+    return xyz("nanotube", "(5,5) carbon nanotube; C-C 1.42 A along the wall from Saito et al., Physical Properties of Carbon Nanotubes, 1998", turned(atoms, 12, 24))
 
 
 @molecule
@@ -325,7 +336,7 @@ def ferrocene():
         for side, k in product((1, -1), range(5)):
             turn = math.radians(72 * k)
             atoms.append((symbol, (radius * math.sin(turn), side * height, radius * math.cos(turn))))
-    return xyz("ferrocene", "ferrocene; lengths from Haaland and Nilsson, Acta Chem. Scand. 1968, 22, 2653", atoms)
+    return xyz("ferrocene", "ferrocene; lengths from Haaland and Nilsson, Acta Chem. Scand. 1968, 22, 2653", turned(atoms, 12, 14))
 
 
 @molecule
@@ -340,7 +351,7 @@ def sulfur():
     for k in range(8):
         turn = math.radians(45 * k)
         atoms.append(("S", (radius * math.cos(turn), rise / 2 * (-1) ** k, radius * math.sin(turn))))
-    return xyz("sulfur", "S8; mean S-S 2.05 A and 108 deg from Rettig and Trotter, Acta Cryst. C 1987, 43, 2260", atoms)
+    return xyz("sulfur", "S8; mean S-S 2.05 A and 108 deg from Rettig and Trotter, Acta Cryst. C 1987, 43, 2260", turned(atoms, 20, 52))
 
 
 @molecule
