@@ -32,6 +32,14 @@ fn to_viewer_step(ray: Ray, step: vec3<f32>, orthographic: f32) -> vec3<f32> {
     return -(step - toward * dot(toward, step)) * inverse * (1.0 - orthographic);
 }
 
+// Depth of a surface that the visibility pass saw. On the last ray before the outline this cast may round to a miss;
+// the point nearest to the object's middle is then within rounding of the surface.
+fn seen_at(ray: Ray, span: vec2<f32>, middle: vec3<f32>) -> f32 {
+    let t = first_beyond(span, view.near);
+    let nearest = dot(middle - ray.origin, ray.direction) / dot(ray.direction, ray.direction);
+    return select(t, nearest, t < 0.0);
+}
+
 // The surface that `id` names along `ray`. ATOMS and CONNECTORS say which kinds the scene has at all.
 fn surface_at(ray: Ray, id: u32) -> Surface {
     var s: Surface;
@@ -44,7 +52,7 @@ fn surface_at(ray: Ray, id: u32) -> Surface {
     if ATOMS && (!CONNECTORS || (id >> 29u) == KIND_ATOM) {
         let atom = atom_at(index);
         let center = to_view(view, atom.position_world);
-        t = first_beyond(sphere_span(ray, center, atom.radius), view.near);
+        t = seen_at(ray, sphere_span(ray, center, atom.radius), center);
         normal = sphere_normal(ray, t, center, atom.radius);
         s.base_color = unpack_linear(atom.color);
         bend = 1.0 / atom.radius;
@@ -52,7 +60,7 @@ fn surface_at(ray: Ray, id: u32) -> Surface {
         let connector = connector_at(index);
         let a = to_view(view, connector.a_world);
         let b = to_view(view, connector.b_world);
-        t = first_beyond(cone_span(ray, a, b, connector.radius, connector.radius), view.near);
+        t = seen_at(ray, cone_span(ray, a, b, connector.radius, connector.radius), 0.5 * (a + b));
         normal = cylinder_normal(ray, t, a, b, connector.radius);
         axis = normalize(b - a);
         let along = dot(ray.origin + t * ray.direction - 0.5 * (a + b), axis);
