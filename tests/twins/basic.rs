@@ -144,13 +144,7 @@ fn exposure_is_in_stops_and_shadow_takes_light_away() {
         ambient_light: Vec3::ZERO,
         environment: Studio::white().uniform(),
     };
-<<<<<<< HEAD
-    let shade = |scene: &Scene, stops| {
-        basic_shade(scene, &facing(Vec3::splat(0.5)), &BasicMaterial::new(0.0, 0.0, 1.0, stops)).x
-    };
-=======
     let shade = |scene: &Scene, stops| basic_shade(scene, &facing(Vec3::splat(0.5)), &material(0.0, 0.0, stops)).x;
->>>>>>> f0051bb (Make the tests of basic's twin compile again; format the twins)
     // Both lie above the haze and below compression, where the tone map is x - 0.04.
     let (one, two) = (shade(&light(1.0), 0.0) + 0.04, shade(&light(1.0), 1.0) + 0.04);
     assert!((two / one - 2.0).abs() < 1e-4, "{one} {two}");
