@@ -4,7 +4,6 @@
 // Soft: average depth of what blocks, then a filter as wide as the penumbra [Fernando2005 §2].
 // A convex object never shades itself: its unlit side is found by n.l, so there is no bias for it.
 
-const SOFT_TAPS: u32 = 16u;
 const MAX_SHADOWS: u32 = 4u;
 
 struct ShadowView {
@@ -33,14 +32,6 @@ fn blocks(light_view: View, id: u32, origin: vec3<f32>, toward: vec3<f32>) -> bo
     return span.x <= span.y && span.y > 0.0;
 }
 
-// Depth of the light's view at a map value; the inverse of depth_value.
-fn t_from_depth(light_view: View, value: f32) -> f32 {
-    if light_view.orthographic > 0.5 {
-        return (value - light_view.depth_from_t.y) / light_view.depth_from_t.z;
-    }
-    return light_view.depth_from_t.x / max(value, 1e-9);
-}
-
 fn shadow_light(light: Light, s: Surface) -> f32 {
     let layer = light.shadow;
     let light_view = shadows.views[layer].light;
@@ -57,7 +48,7 @@ fn shadow_light(light: Light, s: Surface) -> f32 {
         for (var i = 0; i < 4; i++) {
             let texel = base + vec2<i32>(i & 1, i >> 1);
             if any(texel < vec2<i32>(0)) || any(texel > last) { continue; }
-            let id = textureLoad(shadow_ids, texel, layer, 0).x;
+            let id = textureLoad(shadow_maps, texel, layer, 0).x;
             if id == 0u || id == s.id || id == seen { continue; }
             seen = id;
             if blocks(light_view, id, point, toward) { return 0.0; }
@@ -74,7 +65,7 @@ fn shadow_light(light: Light, s: Surface) -> f32 {
     var blocker_sum = 0.0;
     var blockers = 0.0;
     for (var i = 0u; i < SOFT_TAPS; i++) {
-        let blocker = shadow_tap(light_view, layer, place_px + reach * disc_tap(i, turn), last, s.id);
+        let blocker = shadow_tap(layer, place_px + reach * disc_tap(i, turn), last, s.id);
         if blocker > 0.0 && blocker < near_enough {
             blocker_sum += blocker;
             blockers += 1.0;
@@ -86,19 +77,18 @@ fn shadow_light(light: Light, s: Surface) -> f32 {
     let wide = max(light.softness_tan * (t - blocker_t) / texel_light, 0.5);
     var open = 0.0;
     for (var i = 0u; i < SOFT_TAPS; i++) {
-        let blocker = shadow_tap(light_view, layer, place_px + wide * disc_tap(i, turn), last, s.id);
+        let blocker = shadow_tap(layer, place_px + wide * disc_tap(i, turn), last, s.id);
         if blocker <= 0.0 || blocker >= near_enough { open += 1.0; }
     }
     return open / f32(SOFT_TAPS);
 }
 
 // Depth of what the light sees at a place; 0 where that is nothing, outside, or the receiver itself.
-fn shadow_tap(light_view: View, layer: i32, place_px: vec2<f32>, last: vec2<i32>, own: u32) -> f32 {
+fn shadow_tap(layer: i32, place_px: vec2<f32>, last: vec2<i32>, own: u32) -> f32 {
     let texel = vec2<i32>(floor(place_px));
     if any(texel < vec2<i32>(0)) || any(texel > last) { return 0.0; }
-    let id = textureLoad(shadow_ids, texel, layer, 0).x;
-    if id == 0u || id == own { return 0.0; }
-    return t_from_depth(light_view, textureLoad(shadow_depth, texel, layer, 0));
+    let seen = textureLoad(shadow_maps, texel, layer, 0).xy;
+    return select(bitcast<f32>(seen.y), 0.0, seen.x == 0u || seen.x == own);
 }
 
 // Points spread evenly over the unit disc on a spiral of the golden angle [Vogel1979 eq. 1].

@@ -16,11 +16,6 @@ struct AtomVarying {
     @location(2) @interpolate(flat) hull: f32,
 }
 
-struct VisibilityOut {
-    @location(0) id: u32,
-    @builtin(frag_depth) depth: f32,
-}
-
 @vertex
 fn atom_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> AtomVarying {
     let index = atom_order[instance];
@@ -68,5 +63,5 @@ fn atom_fragment(in: AtomVarying) -> VisibilityOut {
         }
     }
     if !seen { discard; }
-    return VisibilityOut(id, depth_value(view, depth));
+    return visibility_out(id, depth);
 }

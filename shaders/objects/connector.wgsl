@@ -17,17 +17,15 @@ struct ConnectorVarying {
     @location(3) @interpolate(flat) index: u32,
 }
 
-struct VisibilityOut {
-    @location(0) id: u32,
-    @builtin(frag_depth) depth: f32,
-}
+// As HULL_SHARE for atoms; connectors are thin, so their line may be as wide as they are.
+const CONNECTOR_HULL_SHARE: f32 = 1.0;
 
 // The radius that moves a cylinder's outline by the hull's width at `point`: the eye sees the side
 // at its distance to the axis, so that distance, not the point's own, sets the angle.
 fn cylinder_hull_radius(point: vec3<f32>, axis: vec3<f32>, radius: f32, width_px: f32, width_world: f32) -> f32 {
     let wide = radius + width_world;
     if ORTHOGRAPHIC {
-        return wide + width_px * view.pixel_view;
+        return wide + min(width_px * view.pixel_view, CONNECTOR_HULL_SHARE * wide);
     }
     // Pixels across the axis at this point: its depth times the pixel, seen at the slant of the ray.
     let depth = max(-point.z, view.near);
@@ -41,7 +39,7 @@ fn cylinder_hull_radius(point: vec3<f32>, axis: vec3<f32>, radius: f32, width_px
     let axis_moved = vec2<f32>(axis.x - toward.x / toward.z * axis.z, axis.y - toward.y / toward.z * axis.z);
     let axis_length = max(length(axis_moved), 1e-4);
     let step = abs(moved.x * axis_moved.y - moved.y * axis_moved.x) / axis_length;
-    return wide + width_px * view.pixel_view * depth / max(step, 0.2);
+    return wide + min(width_px * view.pixel_view * depth / max(step, 0.2), CONNECTOR_HULL_SHARE * wide);
 }
 
 @vertex
@@ -75,14 +73,14 @@ fn connector_fragment(in: ConnectorVarying) -> VisibilityOut {
     let ray = ray_at(view, in.position.xy);
     let t = first_beyond(cone_span(ray, in.a.xyz, in.b.xyz, in.radius, in.radius), view.near);
     if t > 0.0 {
-        return VisibilityOut(make_id(KIND_CONNECTOR, in.index), depth_value(view, t));
+        return visibility_out(make_id(KIND_CONNECTOR, in.index), t);
     }
     if HULL && in.a.w > 0.0 {
         let span = cone_span(ray, in.a.xyz, in.b.xyz, in.a.w, in.b.w);
         if span.x <= span.y && span.x > view.near {
-            return VisibilityOut(make_id(KIND_CONNECTOR_HULL, in.index), depth_value(view, span.y));
+            return visibility_out(make_id(KIND_CONNECTOR_HULL, in.index), span.y);
         }
     }
     discard;
-    return VisibilityOut(0u, 0.0);
+    return visibility_out(0u, 1.0);
 }

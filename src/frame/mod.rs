@@ -194,6 +194,7 @@ impl Renderer {
             lights: input.lighting.lights.len().min(MAX_LIGHTS) as u32,
             point_lights: input.lighting.lights.iter().any(|light| matches!(light.place, LightPlace::Point { .. })),
             shadows: shadowed,
+            soft_taps: if shadowed { shadow::soft_taps(samples) } else { 0 },
             orthographic: input.camera.orthographic,
             encode: direct,
             ..contents.needs.clone()
@@ -201,9 +202,13 @@ impl Renderer {
         let hulls = key.hulls;
 
         // Pipelines and targets that are not there yet.
-        let seen = VisibilityKey { hulls, orthographic: input.camera.orthographic };
+        let seen = VisibilityKey { hulls, orthographic: input.camera.orthographic, light: false };
         // Outlines cast no shadows.
-        let lit = |shadow: &ShadowView| VisibilityKey { hulls: false, orthographic: shadow.light.orthographic > 0.5 };
+        let lit = |shadow: &ShadowView| VisibilityKey {
+            hulls: false,
+            orthographic: shadow.light.orthographic > 0.5,
+            light: true,
+        };
         for key in std::iter::once(seen).chain(plan.views.iter().map(lit)) {
             self.pipelines_built += self.visibility.prepare(&gpu, &contents.objects, key)?;
         }
@@ -269,10 +274,7 @@ impl Renderer {
             Some(timer) => timer.read(&gpu)?,
             None => Vec::new(),
         };
-        self.targets.note_shadow_bytes(maps.as_ref().map_or(0, |maps| {
-            let extent = maps.ids.size();
-            u64::from(extent.width) * u64::from(extent.height) * u64::from(extent.depth_or_array_layers) * 8
-        }));
+        self.targets.note_shadow_bytes(maps.as_ref().map_or(0, ShadowMaps::bytes));
         Ok(())
     }
 
@@ -371,6 +373,7 @@ fn needs(list: &DrawList, materials: &Materials) -> ShadeKey {
         lights: 0,
         point_lights: false,
         shadows: false,
+        soft_taps: 0,
         orthographic: false,
         encode: false,
     }

@@ -41,6 +41,8 @@ pub struct ShadeKey {
     pub point_lights: bool,
     /// Whether a light casts shadows.
     pub shadows: bool,
+    /// Taps of a soft shadow's filter, for one sample.
+    pub soft_taps: u32,
     /// Whether the camera is orthographic.
     pub orthographic: bool,
     /// Straight to 8-bit picture values, instead of adding up linear light.
@@ -59,7 +61,7 @@ pub struct ShaderNeeds {
 }
 
 /// First binding of the shaders' own bindings in group 1.
-const FIRST_SHADER_BINDING: u32 = 6;
+const FIRST_SHADER_BINDING: u32 = 5;
 
 struct ShadePipeline {
     layout: wgpu::BindGroupLayout,
@@ -189,7 +191,6 @@ impl Shade {
         if key.shadows {
             entries.push(entry(3, uniform));
             entries.push(entry(4, texture(wgpu::TextureSampleType::Uint, D2Array)));
-            entries.push(entry(5, texture(wgpu::TextureSampleType::Depth, D2Array)));
         }
         let mut binding = FIRST_SHADER_BINDING;
         for shader in key.shaders.iter().map(|needs| &needs.shader) {
@@ -219,10 +220,9 @@ impl Shade {
             wgpu::BindGroupEntry { binding: 1, resource: output.as_entire_binding() },
             wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(inputs.visibility) },
         ];
-        if let Some(((ids, depth), uniform)) = &shadows {
+        if let Some((maps, uniform)) = &shadows {
             entries.push(wgpu::BindGroupEntry { binding: 3, resource: uniform.as_entire_binding() });
-            entries.push(wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::TextureView(ids) });
-            entries.push(wgpu::BindGroupEntry { binding: 5, resource: wgpu::BindingResource::TextureView(depth) });
+            entries.push(wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::TextureView(maps) });
         }
         let mut binding = FIRST_SHADER_BINDING;
         for (shader, materials) in key.shaders.iter().map(|needs| &needs.shader).zip(inputs.materials) {
@@ -301,9 +301,9 @@ pub fn shade_module(key: &ShadeKey) -> Module {
     if key.shadows {
         bindings.push_str(
             "@group(1) @binding(3) var<uniform> shadows: Shadows;\n\
-             @group(1) @binding(4) var shadow_ids: texture_2d_array<u32>;\n\
-             @group(1) @binding(5) var shadow_depth: texture_depth_2d_array;\n",
+             @group(1) @binding(4) var shadow_maps: texture_2d_array<u32>;\n",
         );
+        bindings.push_str(&format!("const SOFT_TAPS: u32 = {}u;\n", key.soft_taps));
     }
     let mut binding = FIRST_SHADER_BINDING;
     let mut cases = String::new();

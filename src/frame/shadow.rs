@@ -3,7 +3,7 @@
 use glam::{Mat4, Vec2, Vec3};
 
 use super::view::View;
-use super::visibility::{DEPTH_FORMAT, ID_FORMAT};
+use super::visibility::{DEPTH_FORMAT, LIGHT_FORMAT};
 use crate::gpu::Gpu;
 use crate::gpu_struct;
 use crate::scene::{Camera, LightPlace, Lighting, Sphere};
@@ -114,6 +114,12 @@ fn point(position: Vec3, center: Vec3, radius: f32) -> Option<Camera> {
     })
 }
 
+/// Taps that find the blockers of a soft shadow, and again that filter it, in one sample of a still. They turn from
+/// sample to sample, so that many samples need few each; below 8 the search misses thin blockers (ours).
+pub fn soft_taps(samples: u32) -> u32 {
+    (32 / samples.max(1)).clamp(8, 16)
+}
+
 /// Texels along a side of the map: about one and a half for each pixel that the picture spends on the scene, since the
 /// exact test of the hard edge needs only ids, and the soft filter is wider than a texel.
 pub fn map_size(gpu: &Gpu, picture_height_px: u32) -> u32 {
@@ -123,42 +129,44 @@ pub fn map_size(gpu: &Gpu, picture_height_px: u32) -> u32 {
 
 /// The maps: ids and depths, one layer for each light.
 pub struct ShadowMaps {
-    /// Ids of what each light sees first.
-    pub ids: wgpu::Texture,
-    /// Their depths.
-    pub depth: wgpu::Texture,
+    /// Ids and depths of what each light sees first.
+    pub seen: wgpu::Texture,
+    /// Depth to test with, used by one light after the other.
+    depth: wgpu::Texture,
 }
 
 impl ShadowMaps {
     /// Allocates `layers` maps.
     pub fn new(gpu: &Gpu, size: u32, layers: u32) -> ShadowMaps {
         ShadowMaps {
-            ids: gpu.target("shadow ids", [size; 2], layers, ID_FORMAT),
-            depth: gpu.target("shadow depth", [size; 2], layers, DEPTH_FORMAT),
+            seen: gpu.target("shadow maps", [size; 2], layers, LIGHT_FORMAT),
+            depth: gpu.target("shadow depth", [size; 2], 1, DEPTH_FORMAT),
         }
     }
 
-    /// One layer to draw to: ids and depth.
+    /// One layer to draw to, and the depth to test with.
     pub fn layer(&self, index: u32) -> (wgpu::TextureView, wgpu::TextureView) {
-        let one = |texture: &wgpu::Texture| {
-            texture.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(wgpu::TextureViewDimension::D2),
-                base_array_layer: index,
-                array_layer_count: Some(1),
-                ..Default::default()
-            })
-        };
-        (one(&self.ids), one(&self.depth))
+        let seen = self.seen.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2),
+            base_array_layer: index,
+            array_layer_count: Some(1),
+            ..Default::default()
+        });
+        (seen, self.depth.create_view(&Default::default()))
     }
 
-    /// All layers to read from: ids and depth.
-    pub fn all(&self) -> (wgpu::TextureView, wgpu::TextureView) {
-        let all = |texture: &wgpu::Texture| {
-            texture.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(wgpu::TextureViewDimension::D2Array),
-                ..Default::default()
-            })
-        };
-        (all(&self.ids), all(&self.depth))
+    /// All layers to read from.
+    pub fn all(&self) -> wgpu::TextureView {
+        self.seen.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..Default::default()
+        })
+    }
+
+    /// Bytes of all maps.
+    pub fn bytes(&self) -> u64 {
+        let extent = self.seen.size();
+        let texels = u64::from(extent.width) * u64::from(extent.height);
+        texels * (8 * u64::from(extent.depth_or_array_layers) + 4)
     }
 }

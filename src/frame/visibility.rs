@@ -13,6 +13,8 @@ use crate::wgsl;
 
 /// Ids: kind in the upper 3 bits, index below.
 pub const ID_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+/// Shadow maps: an id, and the depth along the light's view as the bits of a float.
+pub const LIGHT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// Reversed depth, 1 nearest.
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
@@ -26,6 +28,8 @@ pub struct VisibilityKey {
     pub hulls: bool,
     /// Whether the view is orthographic.
     pub orthographic: bool,
+    /// Whether it is a light that looks, into a shadow map.
+    pub light: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -221,7 +225,7 @@ impl Visibility {
                 module: &module,
                 entry_point: Some(fragment),
                 compilation_options: Default::default(),
-                targets: &[Some(ID_FORMAT.into())],
+                targets: &[Some(if key.light { LIGHT_FORMAT } else { ID_FORMAT }.into())],
             }),
             multiview_mask: None,
             cache: None,
@@ -281,6 +285,7 @@ pub fn visibility_module(atoms: bool, key: VisibilityKey) -> Module {
         "visibility options",
         format!("const HULL: bool = {};\nconst ORTHOGRAPHIC: bool = {};", key.hulls, key.orthographic),
     );
+    module.add(if key.light { wgsl!("lib/seen_light.wgsl") } else { wgsl!("lib/seen_camera.wgsl") });
     module.add(if atoms { wgsl!("objects/atom.wgsl") } else { wgsl!("objects/connector.wgsl") });
     module
 }
