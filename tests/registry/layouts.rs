@@ -1,6 +1,6 @@
 //! Structs that Rust writes and WGSL reads lie the same on both sides.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use restyle::frame::gpu_structs;
 use restyle::gpu::StructInfo;
@@ -33,18 +33,18 @@ fn differences(rust: &StructInfo, wgsl: &WgslStruct) -> Vec<String> {
 
 #[test]
 fn every_gpu_struct_equals_its_wgsl() {
-    let mut complaints = Vec::new();
+    let mut complaints = BTreeSet::new();
     for rust in gpu_structs() {
         let named: Vec<&WgslStruct> = survey().structs.iter().filter(|wgsl| wgsl.name == rust.name).collect();
         if !named.iter().any(|wgsl| wgsl.file == rust.path) {
-            complaints.push(format!("shaders/{}: no module takes a struct {} from there", rust.path, rust.name));
+            complaints.insert(format!("shaders/{}: no module takes a struct {} from there", rust.path, rust.name));
         }
         for wgsl in named {
             let place = format!("shaders/{}:{}: struct {}", wgsl.file, wgsl.line, rust.name);
             complaints.extend(differences(&rust, wgsl).iter().map(|difference| format!("{place}: {difference}")));
         }
     }
-    assert_none(&complaints);
+    assert_none(&complaints.into_iter().collect::<Vec<_>>());
 }
 
 #[test]

@@ -140,8 +140,8 @@ fn covering_switches() -> impl Iterator<Item = u32> {
     (0..1 << NUM_SWITCHES).filter(|bits: &u32| !(2..=NUM_SWITCHES - 2).contains(&bits.count_ones()))
 }
 
-/// Keys of the shading pass: for every set of shaders the covering answers. Any three questions
-/// are so answered in all combinations, and most combinations of all twelve are left out.
+/// Keys of the shading pass: every set of shaders with the covering answers. Any three questions are so answered in all
+/// combinations, and most combinations of all twelve are left out.
 fn shade_keys() -> Vec<ShadeKey> {
     let mut keys = Vec::new();
     for shaders in 0..1u32 << SHADERS.len() {
