@@ -1,6 +1,6 @@
 // From linear light to what a picture file holds.
 
-// IEC 61966-2-1.
+// The sRGB transfer curve [IEC61966, part 2-1].
 fn srgb_from_linear(linear: vec3<f32>) -> vec3<f32> {
     let c = clamp(linear, vec3<f32>(0.0), vec3<f32>(1.0));
     let low = 12.92 * c;

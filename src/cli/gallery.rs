@@ -10,8 +10,7 @@ use super::inputs::{self, Size};
 use super::render::{cannot_write, progress_bar};
 use super::{Failure, render};
 use crate::config::Style;
-use crate::engine::{Engine, Request};
-use crate::gpu::Gpu;
+use crate::engine::{Engine, Gpu, Request};
 use crate::scene::{LoadOptions, ModelChoice, Scene, write_whole};
 use crate::shipped::{LOOKS, MOLECULES};
 

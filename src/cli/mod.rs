@@ -10,7 +10,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::gpu::GpuError;
+use crate::engine::GpuError;
 
 /// Draws molecules as a JSON style file says.
 #[derive(Debug, Parser)]

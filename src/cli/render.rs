@@ -8,9 +8,7 @@ use std::time::Instant;
 use super::inputs::{self, Size};
 use super::{Failure, inputs::Loaded};
 use crate::config::Style;
-use crate::engine::{Engine, Request};
-use crate::frame::MAX_SAMPLES;
-use crate::gpu::Gpu;
+use crate::engine::{Engine, Gpu, GpuError, MAX_SAMPLES, Request};
 use crate::scene::{AovName, LoadOptions, ModelChoice};
 
 #[derive(Debug, clap::Args)]
@@ -81,7 +79,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         (gpu.join(), loaded, style)
     });
     let (style, loaded) = (style?, loaded?);
-    let (gpu, device_ms) = gpu.map_err(|_| Failure::from(crate::gpu::GpuError::NoAdapter))?;
+    let (gpu, device_ms) = gpu.map_err(|_| Failure::from(GpuError::NoAdapter))?;
     let gpu = Arc::new(gpu?);
     inputs::print_warnings(&style, &loaded.scene);
     let load_ms = loaded.ms;

@@ -15,7 +15,7 @@ impl Srgba {
         Self { rgba: [r as f32 / 255.0, g as f32 / 255.0, b as f32 / 255.0, 1.0] }
     }
 
-    /// The colour as shading needs it: linear light, straight alpha [IEC 61966-2-1].
+    /// The colour as shading needs it: linear light, straight alpha [IEC61966, part 2-1].
     pub fn to_linear(self) -> [f32; 4] {
         let [r, g, b, a] = self.rgba;
         let linear = |c: f32| {

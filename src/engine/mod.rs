@@ -8,11 +8,13 @@ use std::time::Instant;
 
 use crate::config::{CatalogEntry, ObjectKind, Role, Style};
 use crate::frame::{self, Aovs, FrameInput, Renderer, TargetBytes};
-use crate::gpu::{Gpu, GpuError, PassTimes};
+use crate::gpu::PassTimes;
 use crate::providers::{CameraProvider, LightingProvider};
 use crate::scene::{AovImage, Image, Pixels, Scene};
 use crate::shading::SHADERS;
 
+pub use crate::frame::MAX_SAMPLES;
+pub use crate::gpu::{Gpu, GpuError};
 pub use build::Built;
 
 /// Effects and shaders of the contract that this version names but does not draw.

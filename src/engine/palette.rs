@@ -6,7 +6,7 @@ use crate::config::{BaseColor, Srgba};
 use crate::scene::{Atom, Molecule};
 use crate::shading::linear;
 
-/// Colours of chains and residues in turn: after Okabe and Ito (2008), which stay apart for colour-blind eyes, softened
+/// Colours of chains and residues in turn: after [Okabe2008, "Set of colors"], which stay apart for colour-blind eyes, softened
 /// for large areas, then lighter and darker turns of the same hues.
 const PALETTE: [[u8; 3]; 12] = [
     [0x4c, 0x8d, 0xc4],

@@ -1,7 +1,7 @@
 //! Bonds: those that the file names, and those that distances tell.
 //!
 //! Two atoms are bonded by distance if they are nearer than the sum of their covalent radii plus 0.45 angstrom and farther
-//! apart than 0.4 [rule and both numbers: Open Babel, `OBMol::ConnectTheDots` in src/mol.cpp]. Exceptions:
+//! apart than 0.4 [OpenBabel, `OBMol::ConnectTheDots` in src/mol.cpp: rule and both numbers]. Exceptions:
 //! - A hydrogen has one bond, to its nearest heavy atom (else to its nearest hydrogen).
 //! - Two metals never bond; a metal and a non-metal do, with the same tolerance: Co-Cl at 2.4 angstrom is a bond.
 //! - Alkali metals and calcium to radium bond only if the file says so ([`Element::is_ionic`]): rock salt has no bonds.

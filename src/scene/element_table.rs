@@ -1,11 +1,10 @@
 //! The numbers of the chemical elements: one row per atomic number.
 //!
 //! Sources, by column:
-//! - covalent radius in angstrom: Cordero et al., Dalton Trans. 2008, 2832, doi:10.1039/b801115j (carbon sp3; Mn, Fe, Co low spin).
-//! - van der Waals radius in angstrom: Mantina et al., J. Phys. Chem. A 2009, 113, 5806, doi:10.1021/jp8111556, for the
-//!   44 main-group elements; Bondi, J. Phys. Chem. 1964, 68, 441 for Ni, Cu, Zn, Pd, Ag, Cd, Pt, Au, Hg and U; Alvarez,
-//!   Dalton Trans. 2013, 42, 8617, doi:10.1039/c3dt50599e for the rest.
-//! - colour, sRGB: Jmol's table, jmol.sourceforge.net/jscolors.
+//! - covalent radius in angstrom: [Cordero2008, carbon sp3; Mn, Fe, Co low spin].
+//! - van der Waals radius in angstrom: [Mantina2009, the 44 main-group elements];
+//!   [Bondi1964, Ni, Cu, Zn, Pd, Ag, Cd, Pt, Au, Hg and U]; [Alvarez2013, the rest].
+//! - colour, sRGB: [Jmol, "jscolors"].
 //!
 //! Ours, where nobody published a number: 1.60 and 2.00 angstrom, and meitnerium's colour after meitnerium.
 

@@ -1,6 +1,6 @@
 //! The smallest sphere around many spheres, nearly.
 //!
-//! Ritter's first guess [Graphics Gems, 1990, "An efficient bounding sphere"] gives two extreme balls; then the ball that
+//! Ritter's first guess [Ritter1990, pp. 301-303] gives two extreme balls; then the ball that
 //! sticks out farthest is added to a small set and the sphere of that set is solved again, until none sticks out. Few
 //! passes over all balls are needed, each linear; the last one measures the radius, so it is never too small.
 
@@ -57,7 +57,7 @@ fn farthest(from: DVec3, balls: impl Iterator<Item = Ball>) -> Ball {
 }
 
 /// The centre of the smallest sphere around a few balls: steps towards whichever reaches farthest, ever smaller
-/// [Badoiu and Clarkson, SODA 2003, with decaying steps of ours].
+/// [Badoiu2003, with decaying steps of ours].
 fn solve(start: DVec3, balls: &[Ball]) -> DVec3 {
     let (mut center, mut step) = (start, FIRST_STEP);
     let (mut best, mut best_reach) = (start, f64::INFINITY);

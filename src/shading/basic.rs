@@ -1,7 +1,7 @@
 //! `basic`: Disney diffuse and GGX under lights and a studio environment, tone-mapped at its end.
 //!
-//! Reads the table of [`super::brdf_table`] and the uniform of [`super::environment`]. Source: [Burley2012], named by
-//! [Murray2016 §4.3]. Shader: `shaders/objects/basic.wgsl`. Twin: `tests/twins/basic.rs`.
+//! Reads the table of [`super::brdf_table`] and the uniform of [`super::environment`]. Source: [Burley2012 §5], named by
+//! [Murray2016 §4.2]. Shader: `shaders/objects/basic.wgsl`. Twin: `tests/twins/basic.rs`.
 
 use super::environment::{Environment, EnvironmentLobe, Studio};
 use super::{BASE_COLOR, MaterialContext, ObjectShader, Resource, ResourceData, brdf_table};

@@ -52,7 +52,7 @@ pub trait ObjectShader: Sync {
     fn name(&self) -> &'static str;
     /// One sentence for the manual.
     fn doc(&self) -> &'static str;
-    /// Its parameters, beside [`COMMON`].
+    /// Its parameters, [`BASE_COLOR`] among them.
     fn params(&self) -> &'static [Param];
     /// WGSL that its entry needs, its own file last.
     fn wgsl(&self) -> &'static [Wgsl];

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 /// Damaged files. At some 0.2 ms each, more would only repeat.
 const NUM_MUTATIONS: u32 = 2000;
 
-/// Numbers from a seed [PCG, O'Neill 2014, its underlying LCG].
+/// Numbers from a seed [ONeill2014, its underlying LCG].
 struct Random(u64);
 
 impl Random {

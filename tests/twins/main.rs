@@ -4,3 +4,4 @@ mod basic;
 mod brdf;
 mod brdf_table;
 mod environment;
+mod unlit;

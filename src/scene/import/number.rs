@@ -58,7 +58,7 @@ pub(super) fn integer(field: &[u8]) -> Option<i64> {
 }
 
 /// An integer in a column of fixed width, decimal or hybrid-36: past all nines come `A000`, ..., `ZZZZ`, `a000`, ...
-/// [Grosse-Kunstleve, cci.lbl.gov/hybrid_36].
+/// [Hybrid36, cci.lbl.gov/hybrid_36].
 pub(super) fn hybrid36(field: &[u8]) -> Option<i64> {
     if let Some(number) = integer(field) {
         return Some(number);

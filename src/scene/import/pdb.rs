@@ -1,6 +1,6 @@
 //! PDB files: fixed columns, thirty years of habits.
 //!
-//! Columns after [wwPDB format 3.3]; counted from 0 here. Read as bytes: remarks may be in any encoding. Tolerated and
+//! Columns after [PdbFormat 3.3]; counted from 0 here. Read as bytes: remarks may be in any encoding. Tolerated and
 //! noted: lower case, lines cut short, blank or unreadable coordinates, missing or wrong elements, residue numbers and
 //! serials past their columns (hybrid-36, or one more digit), `MODEL` without `ENDMDL`. Atoms after `END` or `ENDMDL`
 //! without a new `MODEL` are the next model, as trajectories are written.

@@ -9,7 +9,7 @@ use crate::catalog::{EARLY, LATER};
 /// Mutations in all.
 const MUTATIONS: usize = 3000;
 
-/// xorshift64* [Vigna 2016]: small and the same everywhere.
+/// xorshift64* [Vigna2016]: small and the same everywhere.
 struct Random(u64);
 
 impl Random {

@@ -1,0 +1,200 @@
+//! Every shader module that the program can compose, read and validated by naga.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::error::Error;
+use std::sync::OnceLock;
+
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::{AddressSpace, Handle, Type, TypeInner};
+use restyle::frame::{
+    ShadeKey, ShaderNeeds, VisibilityKey, aov_module, resolve_module, shade_module, visibility_module,
+};
+use restyle::gpu::Module;
+use restyle::shading::SHADERS;
+
+use super::{assert_none, files_below};
+
+/// One struct of a module.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct WgslStruct {
+    /// Its name.
+    pub name: String,
+    /// The file that declares it, below `shaders/`.
+    pub file: &'static str,
+    /// The line of its name.
+    pub line: usize,
+    /// Names and offsets of its members.
+    pub fields: Vec<(String, usize)>,
+    /// Bytes.
+    pub size: usize,
+    /// Whether a uniform or storage buffer holds it, alone or within another.
+    pub in_buffer: bool,
+}
+
+/// What all modules together hold.
+#[derive(Default)]
+pub struct Survey {
+    /// Mistakes, each with the first module that has it.
+    pub mistakes: BTreeMap<String, String>,
+    /// Files that are part of a module.
+    pub files: BTreeSet<&'static str>,
+    /// Structs, one entry for each declaration and layout.
+    pub structs: BTreeSet<WgslStruct>,
+}
+
+/// The survey of all modules, made once.
+pub fn survey() -> &'static Survey {
+    static SURVEY: OnceLock<Survey> = OnceLock::new();
+    SURVEY.get_or_init(|| {
+        let mut survey = Survey::default();
+        for orthographic in [false, true] {
+            for hulls in [false, true] {
+                let key = VisibilityKey { hulls, orthographic };
+                survey.read(&format!("visibility of atoms, {key:?}"), &visibility_module(true, key));
+                survey.read(&format!("visibility of connectors, {key:?}"), &visibility_module(false, key));
+            }
+            survey.read(&format!("aov, orthographic {orthographic}"), &aov_module(orthographic));
+        }
+        survey.read("resolve", &resolve_module());
+        for key in shade_keys() {
+            survey.read(&format!("shade, {key:?}"), &shade_module(&key));
+        }
+        survey
+    })
+}
+
+impl Survey {
+    fn read(&mut self, name: &str, module: &Module) {
+        let text = module.text();
+        self.files.extend((1..=text.lines().count()).map(|line| module.place(line).0));
+        let place = |line: u32| {
+            let (file, line) = module.place(line as usize);
+            if file.ends_with(".wgsl") { format!("shaders/{file}:{line}") } else { format!("{file}:{line}") }
+        };
+        let mut mistake = |line: Option<u32>, message: String| {
+            let place = line.map_or("no line".to_owned(), place);
+            self.mistakes.entry(format!("{place}: {message}")).or_insert(name.to_owned());
+        };
+        let parsed = match naga::front::wgsl::parse_str(&text) {
+            Ok(parsed) => parsed,
+            Err(error) => {
+                return mistake(error.location(&text).map(|at| at.line_number), error.message().to_owned());
+            }
+        };
+        // Half floats are packed in 32 bits, which every adapter unpacks; nothing else is asked of one.
+        let mut validator = Validator::new(ValidationFlags::all(), Capabilities::SHADER_FLOAT16_IN_FLOAT32);
+        if let Err(error) = validator.validate(&parsed) {
+            let mut message = error.as_inner().to_string();
+            let mut cause = error.as_inner().source();
+            while let Some(error) = cause {
+                message.push_str(&format!(": {error}"));
+                cause = error.source();
+            }
+            mistake(error.location(&text).map(|at| at.line_number), message);
+        }
+        self.structs.extend(structs(&parsed, &text, module));
+    }
+}
+
+fn structs(parsed: &naga::Module, text: &str, module: &Module) -> Vec<WgslStruct> {
+    let mut in_buffer = BTreeSet::new();
+    for (_, variable) in parsed.global_variables.iter() {
+        if matches!(variable.space, AddressSpace::Uniform | AddressSpace::Storage { .. } | AddressSpace::Immediate) {
+            collect(parsed, variable.ty, &mut in_buffer);
+        }
+    }
+    let declared = parsed.types.iter().filter_map(|(handle, ty)| {
+        let (TypeInner::Struct { members, span }, Some(name)) = (&ty.inner, &ty.name) else { return None };
+        let at = text.find(&format!("struct {name} {{")).expect("naga knows it from the text");
+        let (file, line) = module.place(text[..at].matches('\n').count() + 1);
+        let fields = members.iter().map(|member| (member.name.clone().unwrap_or_default(), member.offset as usize));
+        Some(WgslStruct {
+            name: name.clone(),
+            file,
+            line,
+            fields: fields.collect(),
+            size: *span as usize,
+            in_buffer: in_buffer.contains(&handle),
+        })
+    });
+    declared.collect()
+}
+
+/// A type and what it is made of.
+fn collect(parsed: &naga::Module, ty: Handle<Type>, into: &mut BTreeSet<Handle<Type>>) {
+    if !into.insert(ty) {
+        return;
+    }
+    match &parsed.types[ty].inner {
+        TypeInner::Struct { members, .. } => members.iter().for_each(|member| collect(parsed, member.ty, into)),
+        TypeInner::Array { base, .. } | TypeInner::BindingArray { base, .. } => collect(parsed, *base, into),
+        _ => (),
+    }
+}
+
+/// How many yes-or-no questions a [`ShadeKey`] answers, beside its list of shaders.
+const NUM_SWITCHES: u32 = 12;
+
+/// Answers, one a bit, of which at most one differs from the rest.
+fn covering_switches() -> impl Iterator<Item = u32> {
+    (0..1 << NUM_SWITCHES).filter(|bits: &u32| !(2..=NUM_SWITCHES - 2).contains(&bits.count_ones()))
+}
+
+/// Keys of the shading pass: every set of shaders with the covering answers. Any three questions are so answered in all
+/// combinations, and most combinations of all twelve are left out.
+fn shade_keys() -> Vec<ShadeKey> {
+    let mut keys = Vec::new();
+    for shaders in 0..1u32 << SHADERS.len() {
+        for switches in covering_switches() {
+            let features = if switches >> 10 & 1 == 1 { u32::MAX } else { 0 };
+            keys.push(shade_key(shaders, switches, features));
+        }
+    }
+    for (index, shader) in SHADERS.iter().enumerate() {
+        keys.extend((0..shader.features().len()).map(|bit| shade_key(1 << index, 0b11, 1 << bit)));
+    }
+    keys
+}
+
+fn shade_key(shaders: u32, switches: u32, features: u32) -> ShadeKey {
+    let on = |switch: u32| switches >> switch & 1 == 1;
+    let used = (0..SHADERS.len()).filter(|index| shaders >> index & 1 == 1);
+    ShadeKey {
+        shaders: used
+            .map(|shader| ShaderNeeds { shader, features, only_material: on(9).then_some(shader as u32) })
+            .collect(),
+        atoms: on(0),
+        connectors: on(1),
+        atom_material: on(2).then_some(0),
+        connector_material: on(3).then_some(1),
+        hulls: on(4),
+        lights: if on(5) { 8 } else { 0 },
+        point_lights: on(6),
+        shadows: on(7),
+        encode: on(8),
+        orthographic: on(11),
+    }
+}
+
+#[test]
+fn every_module_parses_and_validates() {
+    let complaints: Vec<String> =
+        survey().mistakes.iter().map(|(mistake, module)| format!("{mistake} (in {module})")).collect();
+    assert_none(&complaints);
+}
+
+#[test]
+fn every_shader_file_is_part_of_a_module() {
+    let files = files_below("shaders", ".wgsl");
+    assert!(!files.is_empty(), "there are no shaders");
+    let unused = files.iter().filter(|file| !survey().files.contains(file.trim_start_matches("shaders/")));
+    assert_none(&unused.map(|file| format!("{file}: no module uses it")).collect::<Vec<_>>());
+}
+
+#[test]
+fn any_three_switches_are_tried_in_every_combination() {
+    for chosen in (0..1u32 << NUM_SWITCHES).filter(|bits| bits.count_ones() == 3) {
+        let answers: BTreeSet<u32> = covering_switches().map(|switches| switches & chosen).collect();
+        assert_eq!(answers.len(), 8, "{chosen:b}");
+    }
+}

@@ -1,0 +1,99 @@
+//! The registry of shaders, and the tables that a style is read by.
+
+use std::collections::BTreeSet;
+
+use restyle::config::param::check_table;
+use restyle::config::{Catalog, camera, geometry, light, transparency};
+use restyle::engine;
+use restyle::shading::{DEFAULT_SHADER, SHADERS, shader_index};
+
+use super::{assert_none, at, text};
+
+/// Shaders whose twin is still to be written.
+const WITHOUT_TWIN: &[&str] = &["toon"];
+
+#[test]
+fn names_are_unique_and_legal() {
+    let mut seen = BTreeSet::new();
+    for shader in SHADERS {
+        let name = shader.name();
+        assert!(seen.insert(name), "{name:?} is registered twice");
+        // A name is also part of a file's name and of names in WGSL.
+        let legal = name.starts_with(|first: char| first.is_ascii_lowercase())
+            && name.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_')
+            && !name.contains("__");
+        assert!(legal, "{name:?} is not in lower case with underscores");
+        assert!(shader.doc().ends_with('.'), "{name}: its doc is not a sentence");
+    }
+    assert!(shader_index(DEFAULT_SHADER).is_some(), "{DEFAULT_SHADER} is not registered");
+}
+
+#[test]
+fn every_shader_has_its_files() {
+    for shader in SHADERS {
+        let name = shader.name();
+        let own = format!("objects/{name}.wgsl");
+        let wgsl = shader.wgsl().last().map(|file| file.path);
+        assert_eq!(wgsl, Some(own.as_str()), "{name}: its own file comes last");
+        let entry = format!("fn {name}_shade(");
+        assert!(text(&format!("shaders/{own}")).contains(&entry), "shaders/{own}: there is no `{entry}`");
+        assert_eq!(shader.material_info().path, own, "{name}: its material is declared in its own file");
+        assert!(at(&format!("src/shading/{name}.rs")).exists(), "src/shading/{name}.rs is missing");
+    }
+}
+
+#[test]
+fn every_shader_has_a_twin() {
+    let main = text("tests/twins/main.rs");
+    for shader in SHADERS {
+        let name = shader.name();
+        let twin = format!("tests/twins/{name}.rs");
+        let exists = at(&twin).exists();
+        if WITHOUT_TWIN.contains(&name) {
+            assert!(!exists, "{twin} is there now: take {name:?} off the list of shaders without one");
+            continue;
+        }
+        assert!(exists, "{twin} is missing: {name} has no twin");
+        assert!(main.contains(&format!("mod {name};")), "tests/twins/main.rs: there is no `mod {name};`");
+    }
+    let unknown = WITHOUT_TWIN.iter().find(|name| shader_index(name).is_none());
+    assert_eq!(unknown, None, "the list of shaders without a twin names one that is not registered");
+}
+
+#[test]
+fn every_feature_is_named_once_and_read_by_its_shader() {
+    let mut seen = BTreeSet::new();
+    for shader in SHADERS {
+        let name = shader.name();
+        assert!(shader.features().len() <= 32, "{name}: a feature is one bit of 32");
+        for feature in shader.features() {
+            assert!(seen.insert(feature), "{name}: {feature} is the name of two features");
+            let read = shader.wgsl().iter().any(|file| {
+                let code = file.text.lines().map(|line| line.split("//").next().unwrap_or_default());
+                code.into_iter().any(|line| line.contains(feature))
+            });
+            assert!(read, "{name}: no file of its WGSL reads {feature}");
+        }
+    }
+}
+
+#[test]
+fn every_table_of_parameters_is_sound() {
+    let mut tables = vec![
+        ("camera", camera::PARAMS),
+        ("geometry", geometry::PARAMS),
+        ("light", light::PARAMS),
+        ("transparency", transparency::PARAMS),
+    ];
+    tables.extend(SHADERS.iter().map(|shader| (shader.name(), shader.params())));
+    let complaints = tables
+        .iter()
+        .flat_map(|(name, params)| check_table(params).into_iter().map(move |wrong| format!("{name}: {wrong}")));
+    assert_none(&complaints.collect::<Vec<_>>());
+}
+
+#[test]
+fn the_catalog_is_sound() {
+    let shaders = engine::catalog();
+    assert_none(&Catalog { shaders: &shaders, kinds: engine::DRAWN_KINDS }.check());
+}

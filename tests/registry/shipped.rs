@@ -1,0 +1,61 @@
+//! The looks and molecules that the program carries are the files of their folders, and all of them load.
+
+use restyle::config::{self, Catalog, Source};
+use restyle::engine;
+use restyle::scene::Scene;
+use restyle::shipped::{LOOKS, MOLECULES, Shipped};
+
+use super::{assert_none, at, files_below};
+
+/// Files that write molecules instead of being one.
+const NO_MOLECULES: &[&str] = &["make.py"];
+
+fn assert_lists_the_files_of(folder: &str, shipped: &[Shipped], except: &[&str]) {
+    let mut listed: Vec<String> = shipped.iter().map(|shipped| format!("{folder}/{}", shipped.file)).collect();
+    listed.sort();
+    let excepted: Vec<String> = except.iter().map(|file| format!("{folder}/{file}")).collect();
+    let files: Vec<String> = files_below(folder, "").into_iter().filter(|file| !excepted.contains(file)).collect();
+    assert_eq!(listed, files, "src/shipped.rs (left) does not list the files of {folder}/ (right)");
+    for shipped in shipped {
+        let file = format!("{folder}/{}", shipped.file);
+        assert!(
+            std::fs::read(at(&file)).is_ok_and(|bytes| bytes == shipped.bytes),
+            "{file}: another content is built in"
+        );
+        assert_eq!(
+            shipped.file.rsplit_once('.').map(|(stem, _)| stem),
+            Some(shipped.name),
+            "{file}: its name is its stem"
+        );
+    }
+}
+
+#[test]
+fn looks_are_the_files_of_styles() {
+    assert_lists_the_files_of("styles", LOOKS, &[]);
+}
+
+#[test]
+fn molecules_are_the_files_of_their_folder() {
+    assert_lists_the_files_of("molecules", MOLECULES, NO_MOLECULES);
+}
+
+#[test]
+fn every_look_loads_without_mistakes() {
+    let shaders = engine::catalog();
+    let catalog = Catalog { shaders: &shaders, kinds: engine::DRAWN_KINDS };
+    let complaints = LOOKS.iter().filter_map(|look| {
+        let mistakes = config::load(&Source::new(look.file, look.bytes), &catalog).err()?;
+        Some(format!("styles/{mistakes}"))
+    });
+    assert_none(&complaints.collect::<Vec<_>>());
+}
+
+#[test]
+fn every_molecule_loads() {
+    let complaints = MOLECULES.iter().filter_map(|molecule| {
+        let error = Scene::from_bytes(molecule.file, molecule.bytes).err()?;
+        Some(format!("molecules/{error}"))
+    });
+    assert_none(&complaints.collect::<Vec<_>>());
+}
