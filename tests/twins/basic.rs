@@ -5,7 +5,7 @@ use super::environment::{environment_diffuse, environment_specular};
 use glam::Vec3;
 use restyle::shading::{
     basic::BasicMaterial,
-    environment::{Studio, Environment},
+    environment::{Environment, Studio},
 };
 
 const TONE_MAP_F90: f32 = 0.04;
@@ -38,11 +38,7 @@ pub struct Scene {
 pub fn tone_map_pbr_neutral(radiance: Vec3) -> Vec3 {
     let color = radiance.max(Vec3::ZERO);
     let low = color.min_element();
-    let offset = if low < 2.0 * TONE_MAP_F90 {
-        low - low * low / (4.0 * TONE_MAP_F90)
-    } else {
-        TONE_MAP_F90
-    };
+    let offset = if low < 2.0 * TONE_MAP_F90 { low - low * low / (4.0 * TONE_MAP_F90) } else { TONE_MAP_F90 };
     let lifted = color - offset;
     let peak = lifted.max_element();
     if peak <= TONE_MAP_START {
@@ -57,8 +53,7 @@ pub fn tone_map_pbr_neutral(radiance: Vec3) -> Vec3 {
 pub fn basic_dominant_direction(n: Vec3, r: Vec3, roughness: f32) -> Vec3 {
     let alpha = roughness * roughness;
     let smoothness = 1.0 - alpha;
-    n.lerp(r, smoothness * (smoothness.sqrt() + alpha))
-        .normalize()
+    n.lerp(r, smoothness * (smoothness.sqrt() + alpha)).normalize()
 }
 
 fn basic_direct(scene: &Scene, s: &Surface, b: &BrdfSurface) -> Vec3 {
@@ -66,11 +61,7 @@ fn basic_direct(scene: &Scene, s: &Surface, b: &BrdfSurface) -> Vec3 {
         .lights
         .iter()
         .filter(|light| light.visibility > 0.0)
-        .map(|light| {
-            light.radiance
-                * light.visibility
-                * brdf_reflect(b, s.normal_view, s.to_viewer, light.to_light)
-        })
+        .map(|light| light.radiance * light.visibility * brdf_reflect(b, s.normal_view, s.to_viewer, light.to_light))
         .sum()
 }
 
@@ -83,12 +74,7 @@ fn basic_environment(scene: &Scene, s: &Surface, b: &BrdfSurface) -> Vec3 {
 
 pub fn basic_shade(scene: &Scene, s: &Surface, m: &BasicMaterial) -> Vec3 {
     let roughness = brdf_filtered_roughness(1.0 - m.smoothness, s.normal_dx, s.normal_dy);
-    let b = brdf_prepare(
-        s.base_color,
-        m.metallic,
-        roughness,
-        s.normal_view.dot(s.to_viewer),
-    );
+    let b = brdf_prepare(s.base_color, m.metallic, roughness, s.normal_view.dot(s.to_viewer));
     let mut radiance = basic_direct(scene, s, &b);
     if scene.ambient_light.cmpgt(Vec3::ZERO).any() {
         radiance += scene.ambient_light * basic_environment(scene, s, &b);
@@ -96,23 +82,18 @@ pub fn basic_shade(scene: &Scene, s: &Surface, m: &BasicMaterial) -> Vec3 {
     tone_map_pbr_neutral(radiance * m.exposure_factor)
 }
 
+/// An opaque material; `stops` is the exposure.
+pub fn material(smoothness: f32, metallic: f32, stops: f32) -> BasicMaterial {
+    BasicMaterial { smoothness, metallic, opacity: 1.0, exposure_factor: stops.exp2() }
+}
+
 fn facing(base_color: Vec3) -> Surface {
-    Surface {
-        normal_view: Vec3::Z,
-        to_viewer: Vec3::Z,
-        base_color,
-        normal_dx: Vec3::ZERO,
-        normal_dy: Vec3::ZERO,
-    }
+    Surface { normal_view: Vec3::Z, to_viewer: Vec3::Z, base_color, normal_dx: Vec3::ZERO, normal_dy: Vec3::ZERO }
 }
 
 #[test]
 fn tone_map_only_takes_the_haze_off_below_compression() {
-    for c in [
-        Vec3::new(0.8, 0.1, 0.3),
-        Vec3::splat(0.5),
-        Vec3::new(0.08, 0.2, 0.09),
-    ] {
+    for c in [Vec3::new(0.8, 0.1, 0.3), Vec3::splat(0.5), Vec3::new(0.08, 0.2, 0.09)] {
         assert!((tone_map_pbr_neutral(c) - (c - 0.04)).abs().max_element() < 1e-6);
     }
     // Pure colours have no haze to take off: the smallest channel is 0.
@@ -145,20 +126,13 @@ fn white_matt_surface_that_faces_a_unit_light_reflects_about_one() {
 
 #[test]
 fn white_furnace_is_shaded_as_one() {
-    let scene = Scene {
-        lights: vec![],
-        ambient_light: Vec3::ONE,
-        environment: Studio::white().uniform(),
-    };
+    let scene = Scene { lights: vec![], ambient_light: Vec3::ONE, environment: Studio::white().uniform() };
     let white = tone_map_pbr_neutral(Vec3::ONE);
     for metallic in [0.0, 1.0] {
         for smoothness in [0.0, 0.5, 1.0] {
-            let m = BasicMaterial::new(smoothness, metallic, 1.0, 0.0);
+            let m = material(smoothness, metallic, 0.0);
             let out = basic_shade(&scene, &facing(Vec3::ONE), &m);
-            assert!(
-                (out - white).abs().max_element() < 1e-4,
-                "m {metallic} s {smoothness}: {out}"
-            );
+            assert!((out - white).abs().max_element() < 1e-4, "m {metallic} s {smoothness}: {out}");
         }
     }
 }
@@ -166,27 +140,13 @@ fn white_furnace_is_shaded_as_one() {
 #[test]
 fn exposure_is_in_stops_and_shadow_takes_light_away() {
     let light = |visibility| Scene {
-        lights: vec![LightSample {
-            to_light: Vec3::Z,
-            radiance: Vec3::splat(0.25),
-            visibility,
-        }],
+        lights: vec![LightSample { to_light: Vec3::Z, radiance: Vec3::splat(0.25), visibility }],
         ambient_light: Vec3::ZERO,
         environment: Studio::white().uniform(),
     };
-    let shade = |scene: &Scene, stops| {
-        basic_shade(
-            scene,
-            &facing(Vec3::splat(0.5)),
-            &BasicMaterial::new(0.0, 0.0, 1.0, stops),
-        )
-        .x
-    };
+    let shade = |scene: &Scene, stops| basic_shade(scene, &facing(Vec3::splat(0.5)), &material(0.0, 0.0, stops)).x;
     // Both lie above the haze and below compression, where the tone map is x - 0.04.
-    let (one, two) = (
-        shade(&light(1.0), 0.0) + 0.04,
-        shade(&light(1.0), 1.0) + 0.04,
-    );
+    let (one, two) = (shade(&light(1.0), 0.0) + 0.04, shade(&light(1.0), 1.0) + 0.04);
     assert!((two / one - 2.0).abs() < 1e-4, "{one} {two}");
     assert_eq!(shade(&light(0.0), 0.0), 0.0);
 }

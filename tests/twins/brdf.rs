@@ -83,8 +83,7 @@ pub fn brdf_prepare(base_color: Vec3, metallic: f32, roughness: f32, n_dot_v: f3
     let alpha2 = r * r * r * r;
     let f0 = Vec3::splat(F0_DIELECTRIC).lerp(base_color, metallic);
     let coat = brdf_specular_albedo(Vec3::splat(F0_DIELECTRIC), albedos).x;
-    let specular_albedo =
-        Vec3::splat(coat).lerp(brdf_specular_albedo(base_color, albedos), metallic);
+    let specular_albedo = Vec3::splat(coat).lerp(brdf_specular_albedo(base_color, albedos), metallic);
     let diffuse_albedo = base_color * ((1.0 - metallic) * (1.0 - coat));
     BrdfSurface {
         n_dot_v: v,
@@ -111,12 +110,9 @@ pub fn brdf_reflect(b: &BrdfSurface, n: Vec3, to_viewer: Vec3, to_light: Vec3) -
     let across = n.cross(half);
     let sin2_n_h = (across.dot(across) / half2).min(1.0);
     let smith_l = brdf_smith(b.alpha2, n_dot_l);
-    let specular = brdf_distribution_pi(b.alpha2, sin2_n_h)
-        * brdf_visibility(n_dot_l, b.n_dot_v, smith_l, b.smith_v);
+    let specular = brdf_distribution_pi(b.alpha2, sin2_n_h) * brdf_visibility(n_dot_l, b.n_dot_v, smith_l, b.smith_v);
     let diffuse = brdf_disney_diffuse(b.roughness, l_dot_h2, brdf_pow5(1.0 - n_dot_l), b.schlick_v);
-    n_dot_l
-        * (b.diffuse_gain * diffuse
-            + b.specular_gain * brdf_fresnel(b.f0, l_dot_h2.sqrt()) * specular)
+    n_dot_l * (b.diffuse_gain * diffuse + b.specular_gain * brdf_fresnel(b.f0, l_dot_h2.sqrt()) * specular)
 }
 
 /// A viewer at `n_dot_v` over the normal +z.
@@ -127,12 +123,7 @@ pub fn viewer(n_dot_v: f32) -> Vec3 {
 /// Integral of (BRDF * n.l * radiance) over the hemisphere around +z. Directions are spread evenly over
 /// the half vector's GGX slope and over the cosine-weighted hemisphere, weighted by the balance
 /// heuristic, so that neither lobe is missed.
-pub fn integrate(
-    b: &BrdfSurface,
-    n_dot_v: f32,
-    count: u32,
-    radiance: impl Fn(Vec3) -> Vec3,
-) -> Vec3 {
+pub fn integrate(b: &BrdfSurface, n_dot_v: f32, count: u32, radiance: impl Fn(Vec3) -> Vec3) -> Vec3 {
     let v = viewer(n_dot_v);
     let alpha2 = f64::from(b.alpha2);
     let pdfs = |l: Vec3| {
@@ -176,10 +167,7 @@ fn white_surface_reflects_all_light_of_a_furnace() {
             for n_dot_v in N_DOT_VS {
                 let b = brdf_prepare(Vec3::ONE, metallic, 1.0 - smoothness, n_dot_v);
                 let total = integrate(&b, n_dot_v, 1 << 14, |_| Vec3::ONE).x;
-                assert!(
-                    (0.98..=1.02).contains(&total),
-                    "m {metallic} s {smoothness} n.v {n_dot_v}: {total}"
-                );
+                assert!((0.98..=1.02).contains(&total), "m {metallic} s {smoothness} n.v {n_dot_v}: {total}");
                 (least, most) = (least.min(total), most.max(total));
             }
         }
@@ -194,10 +182,7 @@ fn white_surface_reflects_all_of_a_white_environment() {
             for n_dot_v in N_DOT_VS {
                 let b = brdf_prepare(Vec3::ONE, metallic, 1.0 - smoothness, n_dot_v);
                 let total = (b.diffuse_albedo + b.specular_albedo).x;
-                assert!(
-                    (total - 1.0).abs() < 1e-5,
-                    "m {metallic} s {smoothness} n.v {n_dot_v}: {total}"
-                );
+                assert!((total - 1.0).abs() < 1e-5, "m {metallic} s {smoothness} n.v {n_dot_v}: {total}");
             }
         }
     }
@@ -212,11 +197,7 @@ fn albedo_that_the_table_gives_is_the_integral_of_the_brdf() {
                 let base = Vec3::new(1.0, 0.5, 0.0);
                 let b = brdf_prepare(base, metallic, 1.0 - smoothness, n_dot_v);
                 let direct = integrate(&b, n_dot_v, 1 << 14, |_| Vec3::ONE);
-                worst = worst.max(
-                    (direct - b.diffuse_albedo - b.specular_albedo)
-                        .abs()
-                        .max_element(),
-                );
+                worst = worst.max((direct - b.diffuse_albedo - b.specular_albedo).abs().max_element());
             }
         }
     }
@@ -244,10 +225,7 @@ fn normal_distribution_integrates_to_one() {
 
 #[test]
 fn lobes_are_reciprocal_before_their_gains() {
-    let pairs = [
-        (Vec3::new(0.3, 0.1, 0.8), Vec3::new(-0.7, 0.4, 0.3)),
-        (Vec3::Z, Vec3::new(0.9, 0.0, 0.1)),
-    ];
+    let pairs = [(Vec3::new(0.3, 0.1, 0.8), Vec3::new(-0.7, 0.4, 0.3)), (Vec3::Z, Vec3::new(0.9, 0.0, 0.1))];
     for (a, b) in pairs.map(|(a, b)| (a.normalize(), b.normalize())) {
         for roughness in [0.1, 0.5, 1.0] {
             let lobe = |v: Vec3, l: Vec3| {
@@ -258,23 +236,14 @@ fn lobes_are_reciprocal_before_their_gains() {
                 brdf_reflect(&s, Vec3::Z, v, l) / l.z
             };
             let (one, other) = (lobe(a, b), lobe(b, a));
-            assert!(
-                (one - other).abs().max_element() <= 1e-4 * one.max_element(),
-                "{one} {other}"
-            );
+            assert!((one - other).abs().max_element() <= 1e-4 * one.max_element(), "{one} {other}");
         }
     }
 }
 
 #[test]
 fn extreme_inputs_stay_finite() {
-    let directions = [
-        Vec3::Z,
-        Vec3::X,
-        Vec3::new(1.0, 0.0, -0.1).normalize(),
-        -Vec3::X,
-        -Vec3::Z,
-    ];
+    let directions = [Vec3::Z, Vec3::X, Vec3::new(1.0, 0.0, -0.1).normalize(), -Vec3::X, -Vec3::Z];
     for base in [Vec3::ZERO, Vec3::ONE] {
         for roughness in [-1.0, 0.0, 1.0, 2.0] {
             for metallic in [0.0, 1.0] {
@@ -282,10 +251,7 @@ fn extreme_inputs_stay_finite() {
                     let b = brdf_prepare(base, metallic, roughness, v.z);
                     for l in directions {
                         let out = brdf_reflect(&b, Vec3::Z, v, l);
-                        assert!(
-                            out.is_finite() && out.min_element() >= 0.0,
-                            "{v} {l} {roughness}: {out}"
-                        );
+                        assert!(out.is_finite() && out.min_element() >= 0.0, "{v} {l} {roughness}: {out}");
                     }
                 }
             }
@@ -296,7 +262,5 @@ fn extreme_inputs_stay_finite() {
 #[test]
 fn filter_is_off_without_derivatives_and_bounded() {
     assert!((brdf_filtered_roughness(0.3, Vec3::ZERO, Vec3::ZERO) - 0.3).abs() < 1e-6);
-    assert!(
-        (brdf_filtered_roughness(0.0, Vec3::X * 9.0, Vec3::ZERO).powi(4) - KERNEL_MAX).abs() < 1e-6
-    );
+    assert!((brdf_filtered_roughness(0.0, Vec3::X * 9.0, Vec3::ZERO).powi(4) - KERNEL_MAX).abs() < 1e-6);
 }

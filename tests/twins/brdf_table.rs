@@ -9,26 +9,15 @@ const STALE: f32 = 1e-6;
 fn committed_table_is_what_compute_gives() {
     let computed = compute();
     if std::env::var("RESTYLE_BLESS").is_ok_and(|name| name == "brdf_table") {
-        let bytes: Vec<u8> = computed
-            .iter()
-            .flatten()
-            .flat_map(|x| x.to_le_bytes())
-            .collect();
+        let bytes: Vec<u8> = computed.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
         std::fs::write("src/shading/brdf_table.bin", bytes).unwrap();
         return;
     }
-    assert_eq!(
-        BYTES.len(),
-        computed.len() * 16,
-        "RESTYLE_BLESS=brdf_table cargo test writes the table"
-    );
+    assert_eq!(BYTES.len(), computed.len() * 16, "RESTYLE_BLESS=brdf_table cargo test writes the table");
     for (i, (texel, bytes)) in computed.iter().zip(BYTES.chunks_exact(16)).enumerate() {
         for (value, bytes) in texel.iter().zip(bytes.chunks_exact(4)) {
             let stored = f32::from_le_bytes(bytes.try_into().unwrap());
-            assert!(
-                (stored - value).abs() <= STALE,
-                "texel {i}: {stored} is stored, {value} computed"
-            );
+            assert!((stored - value).abs() <= STALE, "texel {i}: {stored} is stored, {value} computed");
         }
     }
 }
@@ -54,9 +43,5 @@ fn albedo_seen_from_above_is_that_of_the_closed_form() {
     // alpha = 1, n = v: D = 1 / pi and G2 = 2 n.l / (1 + n.l), so the albedo is the integral of
     // c / (1 + c) over c = 0..1.
     let rough = 1.0 - 2f32.ln();
-    assert!(
-        (white(31, 31) - rough).abs() < 1e-3,
-        "{} is not {rough}",
-        white(31, 31)
-    );
+    assert!((white(31, 31) - rough).abs() < 1e-3, "{} is not {rough}", white(31, 31));
 }

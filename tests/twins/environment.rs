@@ -2,7 +2,7 @@
 
 use super::brdf::{brdf_prepare, integrate, viewer};
 use glam::{Quat, Vec3};
-use restyle::shading::environment::{Studio, EnvironmentLobe, Environment};
+use restyle::shading::environment::{Environment, EnvironmentLobe, Studio};
 use std::f32::consts::PI;
 
 const LOBE_BLUR: f32 = 1.86;
@@ -66,9 +66,7 @@ pub fn environment_specular(environment: &Environment, r: Vec3, roughness: f32) 
     let alpha = roughness * roughness;
     let height = environment_height(environment.zenith[3], r.y, alpha);
     let gradient = rgb(environment.ground).lerp(rgb(environment.zenith), 0.5 + 0.5 * height);
-    environment.lobes.iter().fold(gradient, |sum, lobe| {
-        sum + rgb(lobe.color) * environment_lobe(lobe, r, alpha)
-    })
+    environment.lobes.iter().fold(gradient, |sum, lobe| sum + rgb(lobe.color) * environment_lobe(lobe, r, alpha))
 }
 
 /// Evenly spread unit directions.
@@ -105,12 +103,7 @@ fn white_environment_is_white_at_any_roughness() {
     for d in directions(50) {
         assert!((environment_diffuse(&white, d) - 1.0).abs().max_element() < 1e-4);
         for roughness in [0.0, 0.5, 1.0] {
-            assert!(
-                (environment_specular(&white, d, roughness) - 1.0)
-                    .abs()
-                    .max_element()
-                    < 1e-6
-            );
+            assert!((environment_specular(&white, d, roughness) - 1.0).abs().max_element() < 1e-6);
         }
     }
 }
@@ -137,16 +130,8 @@ fn harmonics_are_near_the_irradiance_integral() {
     let uniform = studio.uniform();
     let (mut worst, mut brightest) = (0f32, 0f32);
     for n in directions(150) {
-        let truth = directions(10_000)
-            .map(|d| studio.radiance(d) * n.dot(d).max(0.0))
-            .sum::<Vec3>()
-            * 4.0
-            / 10_000.0;
-        worst = worst.max(
-            (environment_diffuse(&uniform, n) - truth)
-                .abs()
-                .max_element(),
-        );
+        let truth = directions(10_000).map(|d| studio.radiance(d) * n.dot(d).max(0.0)).sum::<Vec3>() * 4.0 / 10_000.0;
+        worst = worst.max((environment_diffuse(&uniform, n) - truth).abs().max_element());
         brightest = brightest.max(truth.max_element());
     }
     println!("irradiance / pi: largest error {worst} of {brightest}");
@@ -167,10 +152,7 @@ fn blurred_studio_is_near_its_integral() {
         }
         let rms = (squares / 200.0).sqrt();
         println!("roughness {roughness}: RMS {rms:.4}, largest {worst:.4}");
-        assert!(
-            rms <= 0.012 && worst <= 0.05,
-            "roughness {roughness}: RMS {rms}, largest {worst}"
-        );
+        assert!(rms <= 0.012 && worst <= 0.05, "roughness {roughness}: RMS {rms}, largest {worst}");
     }
 }
 
@@ -190,9 +172,7 @@ fn split_sum_is_near_the_full_integral() {
             let seen = super::basic::basic_dominant_direction(n, r, b.roughness);
             let split = b.specular_albedo * environment_specular(&uniform, seen, b.roughness);
             // `integrate` works around +z with the viewer in the xz plane.
-            let tangent = v
-                .reject_from_normalized(n)
-                .normalize_or(n.any_orthonormal_vector());
+            let tangent = v.reject_from_normalized(n).normalize_or(n.any_orthonormal_vector());
             let to_world = glam::Mat3::from_cols(tangent, n.cross(tangent), n);
             assert!((to_world * viewer(n.z) - v).length() < 1e-3);
             let truth = integrate(&b, n.z, 2048, |l| studio.radiance(to_world * l));
