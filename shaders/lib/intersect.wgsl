@@ -87,8 +87,8 @@ fn cylinder_normal(ray: Ray, t: f32, a: vec3<f32>, b: vec3<f32>, radius: f32) ->
     let from_a = ray.origin + t * ray.direction - a;
     let along = dot(from_a, axis);
     let flat = from_a - along * axis;
-    // On a cap the point lies well inside the radius; on the side it does not.
-    if dot(flat, flat) < 0.998 * radius * radius && min(along, height - along) < 1e-3 * height {
+    // Rounding leaves the point beside both surfaces: it is on the nearer one.
+    if abs(min(along, height - along)) < abs(radius - length(flat)) {
         return select(axis, -axis, along < 0.5 * height);
     }
     return normalize(flat);
