@@ -20,10 +20,13 @@ struct Surface {
 }
 
 // Where a point moves on the tangent plane when its ray moves by `step` [Igehy1999 §3.1].
-fn tangent_step(ray: Ray, t: f32, normal: vec3<f32>, step: vec3<f32>, orthographic: f32) -> vec3<f32> {
+// On the outline that is infinitely far, yet within a pixel p of it a surface of curvature k turns by
+// sqrt(2 p k) only: the plane is never taken as steeper than that (ours).
+fn tangent_step(ray: Ray, t: f32, normal: vec3<f32>, bend: f32, step: vec3<f32>, orthographic: f32) -> vec3<f32> {
     let moved = step * mix(t, 1.0, orthographic);
+    let least = max(sqrt(0.5 * bend * length(moved)), 1e-4);
     let facing = dot(normal, ray.direction);
-    return moved - ray.direction * (dot(normal, moved) / min(facing, -1e-4));
+    return moved - ray.direction * (dot(normal, moved) / min(facing, -least));
 }
 
 fn to_viewer_step(ray: Ray, step: vec3<f32>, orthographic: f32) -> vec3<f32> {
@@ -69,8 +72,8 @@ fn surface_at(ray: Ray, id: u32) -> Surface {
     s.to_viewer = -normalize(ray.direction);
     let dx = ray_step_dx(view);
     let dy = ray_step_dy(view);
-    s.position_dx = tangent_step(ray, t, normal, dx, view.orthographic);
-    s.position_dy = tangent_step(ray, t, normal, dy, view.orthographic);
+    s.position_dx = tangent_step(ray, t, normal, bend, dx, view.orthographic);
+    s.position_dy = tangent_step(ray, t, normal, bend, dy, view.orthographic);
     s.normal_dx = turned * bend * (s.position_dx - axis * dot(axis, s.position_dx));
     s.normal_dy = turned * bend * (s.position_dy - axis * dot(axis, s.position_dy));
     s.to_viewer_dx = to_viewer_step(ray, dx, view.orthographic);
