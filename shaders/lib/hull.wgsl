@@ -1,19 +1,29 @@
 // Hull outlines: back faces of an enlarged copy [Prost2016 §4.1].
 
-// By how much a sphere of `radius` at `center` grows so that its outline in the picture moves by
-// `width_px`, plus `width_world`. The angle of the silhouette cone grows by the angle of the pixels,
-// at the mean scale of the picture around the sphere's rim: pixels are stretched by 1/cos^2 away
-// from the axis along the radius and by 1/cos across it.
-fn hull_radius(view: View, center: vec3<f32>, radius: f32, width_px: f32, width_world: f32) -> f32 {
+// Centre and radius of a larger sphere whose outline in the picture lies `width_px`, plus `width_world`,
+// outside that of the sphere of `radius` at `center`. Perspective stretches pictures away from their
+// middle: the two ends of the outline on the line through the middle are moved by the width, and the
+// larger sphere is the one between them; across that line it is right within 3% of the width (ours).
+fn hull_sphere(view: View, center: vec3<f32>, radius: f32, width_px: f32, width_world: f32) -> vec4<f32> {
     let wide = radius + width_world;
+    let step = width_px * view.pixel_view;
     if view.orthographic > 0.5 {
-        return wide + width_px * view.pixel_view;
+        return vec4<f32>(center, wide + step);
     }
     let distance = length(center);
-    if distance <= wide { return wide; }
-    let cosine = clamp(-center.z / distance, 0.2, 1.0);
+    if distance <= wide { return vec4<f32>(center, wide); }
     let sine = wide / distance;
-    let tangent = sine / sqrt(max(1.0 - sine * sine, 1e-6));
-    let grown = tangent + width_px * view.pixel_view * 0.5 * (cosine + cosine * cosine);
-    return distance * grown / sqrt(1.0 + grown * grown);
+    let spread = sine / sqrt(max(1.0 - sine * sine, 1e-6));
+    let off = length(center.xy);
+    let tilt = off / max(-center.z, 1e-3 * distance);
+    // Where the outline reaches beyond 80 degrees or so, as if in the middle of the picture.
+    if tilt * spread > 0.8 || center.z >= 0.0 {
+        let grown = spread + step;
+        return vec4<f32>(center, distance * grown / sqrt(1.0 + grown * grown));
+    }
+    let high = normalize(vec2<f32>((tilt + spread) / (1.0 - tilt * spread) + step, 1.0));
+    let low = normalize(vec2<f32>((tilt - spread) / (1.0 + tilt * spread) - step, 1.0));
+    let toward = normalize(high + low);
+    let outwards = center.xy / max(off, 1e-6 * distance);
+    return vec4<f32>(distance * vec3<f32>(outwards * toward.x, -toward.y), 0.5 * distance * length(high - low));
 }

@@ -11,8 +11,8 @@ struct AtomVarying {
     // View-space centre and radius.
     @location(0) @interpolate(flat) sphere: vec4<f32>,
     @location(1) @interpolate(flat) index: u32,
-    // Radius of the hull; 0 without one.
-    @location(2) @interpolate(flat) hull: f32,
+    // View-space centre of the hull and its radius; 0 without one.
+    @location(2) @interpolate(flat) hull: vec4<f32>,
 }
 
 struct VisibilityOut {
@@ -25,11 +25,11 @@ fn atom_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) inst
     let index = atom_order[instance];
     let atom = atoms[index];
     let center = to_view(view, atom.position_world);
-    var hull = 0.0;
+    var hull = vec4<f32>(0.0);
     if HULL {
         let material = materials[atom.material];
         if material.hull_px + material.hull_world > 0.0 {
-            hull = hull_radius(view, center, atom.radius, material.hull_px, material.hull_world);
+            hull = hull_sphere(view, center, atom.radius, material.hull_px, material.hull_world);
         }
     }
     let sign = vec2<f32>(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0;
@@ -37,7 +37,11 @@ fn atom_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) inst
     out.sphere = vec4<f32>(center, atom.radius);
     out.index = index;
     out.hull = hull;
-    out.position = sphere_quad(view, center, max(atom.radius, hull), sign);
+    if hull.w > 0.0 {
+        out.position = sphere_quad(view, hull.xyz, hull.w, sign);
+    } else {
+        out.position = sphere_quad(view, center, atom.radius, sign);
+    }
     return out;
 }
 
@@ -48,8 +52,8 @@ fn atom_fragment(in: AtomVarying) -> VisibilityOut {
     if t > 0.0 {
         return VisibilityOut(make_id(KIND_ATOM, in.index), depth_value(view, t));
     }
-    if HULL && in.hull > 0.0 {
-        let span = sphere_span(ray, in.sphere.xyz, in.hull);
+    if HULL && in.hull.w > 0.0 {
+        let span = sphere_span(ray, in.hull.xyz, in.hull.w);
         // Only the back faces, and only in front of the eye.
         if span.x <= span.y && span.x > view.near {
             return VisibilityOut(make_id(KIND_ATOM_HULL, in.index), depth_value(view, span.y));
