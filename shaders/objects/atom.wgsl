@@ -12,8 +12,8 @@ struct AtomVarying {
     // View-space centre and radius.
     @location(0) @interpolate(flat) sphere: vec4<f32>,
     @location(1) @interpolate(flat) index: u32,
-    // Radius of the hull; 0 without one.
-    @location(2) @interpolate(flat) hull: f32,
+    // View-space centre of the hull and its radius; 0 without one.
+    @location(2) @interpolate(flat) hull: vec4<f32>,
 }
 
 @vertex
@@ -21,11 +21,11 @@ fn atom_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) inst
     let index = atom_order[instance];
     let atom = atom_at(index);
     let center = to_view(view, atom.position_world);
-    var hull = 0.0;
+    var hull = vec4<f32>(0.0);
     if HULL {
         let material = materials[atom.material];
         if material.hull_px + material.hull_world > 0.0 {
-            hull = hull_radius(view, center, atom.radius, material.hull_px, material.hull_world);
+            hull = hull_sphere(view, center, atom.radius, material.hull_px, material.hull_world);
         }
     }
     let sign = vec2<f32>(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0;
@@ -33,20 +33,22 @@ fn atom_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) inst
     out.sphere = vec4<f32>(center, atom.radius);
     out.index = index;
     out.hull = hull;
-    out.position = sphere_quad(view, center, max(atom.radius, hull), sign);
+    if hull.w > 0.0 {
+        out.position = sphere_quad(view, hull.xyz, hull.w, sign);
+    } else {
+        out.position = sphere_quad(view, center, atom.radius, sign);
+    }
     return out;
 }
 
 @fragment
 fn atom_fragment(in: AtomVarying) -> VisibilityOut {
     let ray = ray_at(view, in.position.xy);
-    // Both the sphere and its hull share the point of closest approach.
     let to_center = in.sphere.xyz - ray.origin;
     let inverse = 1.0 / dot(ray.direction, ray.direction);
     let middle = dot(to_center, ray.direction) * inverse;
     let off = to_center - middle * ray.direction;
-    let off_squared = dot(off, off);
-    let left = in.sphere.w * in.sphere.w - off_squared;
+    let left = in.sphere.w * in.sphere.w - dot(off, off);
     let half = sqrt(max(left, 0.0) * inverse);
     let t = select(middle + half, middle - half, middle - half > view.near);
     var id = make_id(KIND_ATOM, in.index);
@@ -54,12 +56,15 @@ fn atom_fragment(in: AtomVarying) -> VisibilityOut {
     var seen = left >= 0.0 && t > view.near;
     if HULL {
         // Only the back faces, and only in front of the eye; behind the sphere itself they never show.
-        let hull_left = in.hull * in.hull - off_squared;
+        let to_hull = in.hull.xyz - ray.origin;
+        let hull_middle = dot(to_hull, ray.direction) * inverse;
+        let hull_off = to_hull - hull_middle * ray.direction;
+        let hull_left = in.hull.w * in.hull.w - dot(hull_off, hull_off);
         let hull_half = sqrt(max(hull_left, 0.0) * inverse);
         if !seen {
             id = make_id(KIND_ATOM_HULL, in.index);
-            depth = middle + hull_half;
-            seen = hull_left >= 0.0 && middle - hull_half > view.near;
+            depth = hull_middle + hull_half;
+            seen = hull_left >= 0.0 && hull_middle - hull_half > view.near;
         }
     }
     if !seen { discard; }

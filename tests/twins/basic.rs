@@ -65,7 +65,7 @@ fn basic_direct(scene: &Scene, s: &Surface, b: &BrdfSurface) -> Vec3 {
         .sum()
 }
 
-fn basic_environment(scene: &Scene, s: &Surface, b: &BrdfSurface) -> Vec3 {
+pub fn basic_environment(scene: &Scene, s: &Surface, b: &BrdfSurface) -> Vec3 {
     let r = 2.0 * s.normal_view.dot(s.to_viewer) * s.normal_view - s.to_viewer;
     let seen = basic_dominant_direction(s.normal_view, r, b.roughness);
     b.diffuse_albedo * environment_diffuse(&scene.environment, s.normal_view)

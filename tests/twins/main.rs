@@ -1,7 +1,16 @@
-//! CPU twins of the shaders, function by function, and what they are held to.
+//! CPU twins of the shaders, function by function, what they are held to, and the GPU held to them and to truths.
 
 mod basic;
 mod brdf;
 mod brdf_table;
 mod environment;
+mod furnace;
+mod gpu;
+mod impostors;
+mod outlines;
+mod output;
+mod sampling;
+mod surface;
+mod toon;
+mod truth;
 mod unlit;
