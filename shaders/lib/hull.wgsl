@@ -1,13 +1,13 @@
 // Hull outlines: back faces of an enlarged copy [Prost2016 §4.1].
 
-// Centre and radius of a larger sphere whose outline in the picture lies `width_px`, plus `width_world`,
-// outside that of the sphere of `radius` at `center`. Perspective stretches pictures away from their
-// middle: the two ends of the outline on the line through the middle are moved by the width, and the
-// larger sphere is the one between them; across that line it is right within 3% of the width (ours).
 // A line in pixels is never wider than HULL_SHARE of the radius that it outlines: on a molecule seen from
 // far it thins out, where it would turn everything black (ours).
 const HULL_SHARE: f32 = 0.4;
 
+// Centre and radius of a larger sphere whose outline in the picture lies `width_px`, plus `width_world`,
+// outside that of the sphere of `radius` at `center`. Perspective stretches pictures away from their
+// middle: the two ends of the outline on the line through the middle are moved by the width, and the
+// larger sphere is the one between them; across that line it is right within 3% of the width (ours).
 fn hull_sphere(view: View, center: vec3<f32>, radius: f32, width_px: f32, width_world: f32) -> vec4<f32> {
     let wide = radius + width_world;
     let line = width_px * view.pixel_view;

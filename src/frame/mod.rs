@@ -28,7 +28,8 @@ pub use shadow::{MAX_SHADOWS, ShadowView, Shadows};
 use shadow::{ShadowMaps, ShadowPlan};
 pub use targets::TargetBytes;
 use targets::Targets;
-pub use view::{View, sample_offset_px};
+pub use view::View;
+use view::sample_offsets_px;
 pub use visibility::VisibilityKey;
 pub use visibility::visibility_module;
 use visibility::{DEPTH_FORMAT, ID_FORMAT, Visibility, VisibilityPass};
@@ -222,7 +223,8 @@ impl Renderer {
 
         // Uniforms and bindings: a view for each sample, and the view of each light that casts shadows.
         let view = View::new(input.camera, input.size);
-        let views: Vec<View> = (0..samples).map(|index| view.sample(index, samples)).collect();
+        let views: Vec<View> =
+            (0..).zip(sample_offsets_px(samples)).map(|(index, offset)| view.sample(index, samples, offset)).collect();
         let bind =
             |views: &[View], reach| self.visibility.bind(&gpu, &contents.objects, &contents.materials, views, reach);
         let scene = bind(&views, contents.reach)?;

@@ -245,7 +245,7 @@ mod tests {
     #[test]
     fn only_what_lies_wholly_behind_a_larger_ball_is_left_out() {
         for orthographic in [false, true] {
-            let balls = [ball(0.0, 0.0, 10.0, 2.0), ball(0.3, 0.0, 14.0, 0.5), ball(1.9, 0.0, 14.0, 0.5)];
+            let balls = [ball(0.0, 0.0, 10.0, 2.0), ball(0.3, 0.0, 14.0, 0.5), ball(2.4, 0.0, 14.0, 0.5)];
             let (order, _) = orders(&view(orthographic), &balls, &[], Reach::default(), true);
             assert_eq!(order, [0, 2], "orthographic: {orthographic}");
             let (order, _) = orders(&view(orthographic), &balls, &[], Reach::default(), false);

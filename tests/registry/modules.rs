@@ -49,9 +49,11 @@ pub fn survey() -> &'static Survey {
         let mut survey = Survey::default();
         for orthographic in [false, true] {
             for hulls in [false, true] {
-                let key = VisibilityKey { hulls, orthographic };
-                survey.read(&format!("visibility of atoms, {key:?}"), &visibility_module(true, key));
-                survey.read(&format!("visibility of connectors, {key:?}"), &visibility_module(false, key));
+                for light in [false, true] {
+                    let key = VisibilityKey { hulls, orthographic, light };
+                    survey.read(&format!("visibility of atoms, {key:?}"), &visibility_module(true, key));
+                    survey.read(&format!("visibility of connectors, {key:?}"), &visibility_module(false, key));
+                }
             }
             survey.read(&format!("aov, orthographic {orthographic}"), &aov_module(orthographic));
         }
@@ -171,6 +173,7 @@ fn shade_key(shaders: u32, switches: u32, features: u32) -> ShadeKey {
         lights: if on(5) { 8 } else { 0 },
         point_lights: on(6),
         shadows: on(7),
+        soft_taps: 8,
         encode: on(8),
         orthographic: on(11),
     }

@@ -9,9 +9,6 @@ use restyle::shading::{DEFAULT_SHADER, SHADERS, shader_index};
 
 use super::{assert_none, at, text};
 
-/// Shaders whose twin is still to be written.
-const WITHOUT_TWIN: &[&str] = &["toon"];
-
 #[test]
 fn names_are_unique_and_legal() {
     let mut seen = BTreeSet::new();
@@ -48,16 +45,9 @@ fn every_shader_has_a_twin() {
     for shader in SHADERS {
         let name = shader.name();
         let twin = format!("tests/twins/{name}.rs");
-        let exists = at(&twin).exists();
-        if WITHOUT_TWIN.contains(&name) {
-            assert!(!exists, "{twin} is there now: take {name:?} off the list of shaders without one");
-            continue;
-        }
-        assert!(exists, "{twin} is missing: {name} has no twin");
+        assert!(at(&twin).exists(), "{twin} is missing: {name} has no twin");
         assert!(main.contains(&format!("mod {name};")), "tests/twins/main.rs: there is no `mod {name};`");
     }
-    let unknown = WITHOUT_TWIN.iter().find(|name| shader_index(name).is_none());
-    assert_eq!(unknown, None, "the list of shaders without a twin names one that is not registered");
 }
 
 #[test]

@@ -71,8 +71,7 @@ const DIFFERENCE: f64 = 1e-5;
 #[test]
 fn derivatives_are_the_limits_of_differences() {
     let sphere = Shape::Sphere { center: DVec3::new(0.7, -0.4, -6.0), radius: 2.0 };
-    let cylinder =
-        Shape::Cylinder { a: DVec3::new(-2.0, 0.3, -5.0), b: DVec3::new(2.0, -0.5, -7.0), radius: 0.8 };
+    let cylinder = Shape::Cylinder { a: DVec3::new(-2.0, 0.3, -5.0), b: DVec3::new(2.0, -0.5, -7.0), radius: 0.8 };
     for shape in [sphere, cylinder] {
         for orthographic in [false, true] {
             let half = if orthographic { 3.0 } else { 0.5 };

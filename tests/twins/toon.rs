@@ -305,8 +305,7 @@ fn levels_change_where_the_published_equation_says() {
     for bands in SETTINGS {
         let (scale, bias, exponent, steps) = bands;
         let written = format!(r##"{}, "base_color": "#ffffff""##, properties(bands));
-        let Some(mut engine) = gpu::engine(&["C 0 0 0"], &style(r#""orthographic": true"#, HEADLIGHT, &written))
-        else {
+        let Some(mut engine) = gpu::engine(&["C 0 0 0"], &style(r#""orthographic": true"#, HEADLIGHT, &written)) else {
             return;
         };
         let image = gpu::aovs(&mut engine, SIZE);

@@ -17,9 +17,16 @@ pub struct Ray {
 /// A convex primitive in view space.
 #[derive(Debug, Clone, Copy)]
 pub enum Shape {
-    Sphere { center: DVec3, radius: f64 },
+    Sphere {
+        center: DVec3,
+        radius: f64,
+    },
     /// With flat caps.
-    Cylinder { a: DVec3, b: DVec3, radius: f64 },
+    Cylinder {
+        a: DVec3,
+        b: DVec3,
+        radius: f64,
+    },
 }
 
 /// A point on a shape's surface.
@@ -141,9 +148,9 @@ impl World {
         let molecule = &engine.scene().molecule;
         assert_eq!(molecule.atoms.len(), atom_radii.len(), "a radius for each atom");
         let place = |index: usize| view.view_from_world.transform_point3(molecule.atoms[index].position.as_dvec3());
-        let atoms = (0u32..).zip(atom_radii).map(|(index, &radius)| {
-            (ATOM | index, Shape::Sphere { center: place(index as usize), radius })
-        });
+        let atoms = (0u32..)
+            .zip(atom_radii)
+            .map(|(index, &radius)| (ATOM | index, Shape::Sphere { center: place(index as usize), radius }));
         let bonds = (0u32..).zip(&molecule.bonds).map(|(index, bond)| {
             let (a, b) = (place(bond.a as usize), place(bond.b as usize));
             (CONNECTOR | index, Shape::Cylinder { a, b, radius: bond_radius })
