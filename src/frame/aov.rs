@@ -1,6 +1,7 @@
 //! Geometry AOVs: depth, view-space normal and id of the nearest surface at each pixel's centre.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use super::fullscreen;
 use super::visibility::{SceneBindings, Visibility};
@@ -17,7 +18,8 @@ pub struct Aov {
 }
 
 impl Aov {
-    /// Draws the geometry of what `ids` holds, as the first bound view sees it. Builds the pipeline first, where it is not there.
+    /// Draws the geometry of what `ids` holds, as the first bound view sees it. Builds the pipeline first, where it is
+    /// not there.
     ///
     /// # Errors
     /// [`GpuError::Driver`] where the shader does not compile.
@@ -27,32 +29,41 @@ impl Aov {
         encoder: &mut wgpu::CommandEncoder,
         visibility: &Visibility,
         scene: &SceneBindings,
-        orthographic: bool,
-        ids: &wgpu::TextureView,
+        from: &GeometrySource<'_>,
         target: &wgpu::TextureView,
     ) -> Result<(), GpuError> {
-        if !self.pipelines.contains_key(&orthographic) {
-            let layout = fullscreen::layout(gpu, "aov", &[fullscreen::texture(wgpu::TextureSampleType::Uint)]);
-            let pipeline = fullscreen::pipeline(
-                gpu,
-                "aov",
-                &aov_module(orthographic),
-                ["aov_vertex", "aov_fragment"],
-                &[&visibility.layout, &layout],
-                GEOMETRY_FORMAT,
-            )?;
-            self.pipelines.insert(orthographic, (layout, pipeline));
-        }
-        let Some((layout, pipeline)) = self.pipelines.get(&orthographic) else { return Ok(()) };
+        let (layout, pipeline) = match self.pipelines.entry(from.orthographic) {
+            Entry::Occupied(entry) => entry.into_mut(),
+            Entry::Vacant(entry) => {
+                let layout = fullscreen::layout(gpu, "aov", &[fullscreen::texture(wgpu::TextureSampleType::Uint)]);
+                let pipeline = fullscreen::pipeline(
+                    gpu,
+                    "aov",
+                    &aov_module(from.orthographic),
+                    ["aov_vertex", "aov_fragment"],
+                    &[&visibility.layout, &layout],
+                    GEOMETRY_FORMAT,
+                )?;
+                entry.insert((layout, pipeline))
+            }
+        };
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("aov"),
             layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(ids) }],
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(from.ids) }],
         });
         let groups: &[(&wgpu::BindGroup, &[u32])] = &[(&scene.group, &[SceneBindings::offset(0)]), (&group, &[])];
         fullscreen::draw(encoder, "aov", pipeline, groups, target, None);
         Ok(())
     }
+}
+
+/// What the geometry is found from.
+pub struct GeometrySource<'a> {
+    /// Ids of the visibility pass.
+    pub ids: &'a wgpu::TextureView,
+    /// Whether its view is orthographic.
+    pub orthographic: bool,
 }
 
 /// The WGSL of the geometry AOVs.

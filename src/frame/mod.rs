@@ -306,7 +306,8 @@ impl Renderer {
         let geometry = gpu.target("geometry", input.size, 1, aov::GEOMETRY_FORMAT);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("aov") });
         let target = geometry.create_view(&Default::default());
-        self.aov.draw(&gpu, &mut encoder, &self.visibility, &scene, input.camera.orthographic, &ids, &target)?;
+        let from = aov::GeometrySource { ids: &ids, orthographic: input.camera.orthographic };
+        self.aov.draw(&gpu, &mut encoder, &self.visibility, &scene, &from, &target)?;
         gpu.queue.submit([encoder.finish()]);
         gpu.wait()?;
         let floats = |bytes: Vec<u8>| bytes.chunks_exact(4).map(bytemuck::pod_read_unaligned).collect::<Vec<f32>>();

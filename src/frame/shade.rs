@@ -1,6 +1,7 @@
 //! The shading pass: each pixel once, from the id that it sees, with only the shaders that the style uses.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use super::lights::Lights;
 use super::shadow::{ShadowMaps, Shadows};
@@ -106,10 +107,10 @@ impl Shade {
     /// [`GpuError::Driver`] where a shader does not compile.
     pub fn prepare(&mut self, gpu: &Gpu, visibility: &Visibility, key: &ShadeKey) -> Result<u32, GpuError> {
         for shader in key.shaders.iter().map(|needs| needs.shader) {
-            if !self.resources.contains_key(&shader) {
+            if let Entry::Vacant(entry) = self.resources.entry(shader) {
                 let uploaded: Result<Vec<_>, _> =
                     SHADERS[shader].resources().iter().map(|resource| shading::upload(gpu, resource)).collect();
-                self.resources.insert(shader, uploaded?);
+                entry.insert(uploaded?);
             }
         }
         if self.pipelines.contains_key(key) {

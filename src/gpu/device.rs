@@ -78,11 +78,13 @@ impl Gpu {
         let info = adapter.get_info();
         let wanted = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::FLOAT32_BLENDABLE;
         let available = adapter.limits();
-        let mut limits = wgpu::Limits::default();
-        limits.max_texture_dimension_2d = available.max_texture_dimension_2d;
-        limits.max_buffer_size = available.max_buffer_size;
-        limits.max_storage_buffer_binding_size = available.max_storage_buffer_binding_size;
-        let limits = limits.or_worse_values_from(&available);
+        let limits = wgpu::Limits {
+            max_texture_dimension_2d: available.max_texture_dimension_2d,
+            max_buffer_size: available.max_buffer_size,
+            max_storage_buffer_binding_size: available.max_storage_buffer_binding_size,
+            ..Default::default()
+        }
+        .or_worse_values_from(&available);
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("restyle"),
             required_features: adapter.features() & wanted,

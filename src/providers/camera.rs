@@ -135,9 +135,9 @@ fn symmetric_eigen(mut m: [[f64; 3]; 3]) -> ([f64; 3], [DVec3; 3]) {
             for row in &mut m {
                 (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
             }
-            for k in 0..3 {
-                (m[p][k], m[q][k]) = (c * m[p][k] - s * m[q][k], s * m[p][k] + c * m[q][k]);
-            }
+            let (old_p, old_q) = (m[p], m[q]);
+            m[p] = std::array::from_fn(|k| c * old_p[k] - s * old_q[k]);
+            m[q] = std::array::from_fn(|k| s * old_p[k] + c * old_q[k]);
             for row in &mut v {
                 (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
             }

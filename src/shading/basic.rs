@@ -74,7 +74,7 @@ impl ObjectShader for Basic {
             },
             Resource {
                 declaration: "var<uniform> environment: Environment;",
-                data: || ResourceData::Uniform(bytemuck::bytes_of(&Studio::studio().uniform()).to_vec()),
+                data: || ResourceData::Uniform(bytemuck::bytes_of(&Studio::neutral().uniform()).to_vec()),
             },
         ];
         RESOURCES

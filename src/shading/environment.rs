@@ -103,7 +103,7 @@ impl Studio {
     /// Ours: a neutral studio. One large box above left of the camera models the form, a narrow one
     /// right and behind draws a rim that parts dark objects from a dark background, a weak one below
     /// right keeps the shadow side from closing. Chosen by eye on plastic and metal spheres.
-    pub fn studio() -> Self {
+    pub fn neutral() -> Self {
         let studio = Self {
             zenith: Vec3::splat(0.9),
             ground: Vec3::splat(0.28),

@@ -110,7 +110,7 @@ fn white_environment_is_white_at_any_roughness() {
 
 #[test]
 fn mirror_sees_the_environment_itself() {
-    let studio = Studio::studio();
+    let studio = Studio::neutral();
     for d in directions(500) {
         let error = environment_specular(&studio.uniform(), d, 0.0) - studio.radiance(d);
         assert!(error.abs().max_element() < 1e-4, "{d}: {error}");
@@ -119,14 +119,14 @@ fn mirror_sees_the_environment_itself() {
 
 #[test]
 fn studio_has_mean_radiance_one() {
-    let studio = Studio::studio();
+    let studio = Studio::neutral();
     let mean = directions(10_000).map(|d| studio.radiance(d)).sum::<Vec3>() / 10_000.0;
     assert!((mean.element_sum() / 3.0 - 1.0).abs() < 1e-3, "{mean}");
 }
 
 #[test]
 fn harmonics_are_near_the_irradiance_integral() {
-    let studio = Studio::studio();
+    let studio = Studio::neutral();
     let uniform = studio.uniform();
     let (mut worst, mut brightest) = (0f32, 0f32);
     for n in directions(150) {
@@ -140,7 +140,7 @@ fn harmonics_are_near_the_irradiance_integral() {
 
 #[test]
 fn blurred_studio_is_near_its_integral() {
-    let studio = Studio::studio();
+    let studio = Studio::neutral();
     let uniform = studio.uniform();
     for roughness in [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0f32] {
         let (mut squares, mut worst) = (0.0, 0f32);
@@ -159,7 +159,7 @@ fn blurred_studio_is_near_its_integral() {
 /// Quality: the split sum and its dominant direction against integrating BRDF * studio.
 #[test]
 fn split_sum_is_near_the_full_integral() {
-    let studio = Studio::studio();
+    let studio = Studio::neutral();
     let uniform = studio.uniform();
     let v = Vec3::Z;
     let mut total = 0.0;

@@ -53,7 +53,7 @@ fn gpu_equals_twin_in_the_studio() {
         let world = World::new(&engine, SIZE, &[RADIUS], 0.14);
         let light = LightSample { to_light: toward.normalize(), radiance: Vec3::splat(0.8), visibility: 1.0 };
         let scene =
-            Scene { lights: vec![light], ambient_light: Vec3::splat(0.7), environment: Studio::studio().uniform() };
+            Scene { lights: vec![light], ambient_light: Vec3::splat(0.7), environment: Studio::neutral().uniform() };
         let (mut worst, mut compared) = (0f32, 0);
         for (index, pixel) in gpu::pixels(SIZE).enumerate() {
             let Some((_, shape, hit)) = world.seen(center_px(pixel)) else { continue };
