@@ -12,20 +12,20 @@
 // what remains is <= 0.0045 RMS and <= 0.013 at worst of the box's peak.
 
 const ENVIRONMENT_NUM_LOBES: u32 = 3u;     // environment.rs, NUM_LOBES
-const ENVIRONMENT_LOBE_BLUR: f32 = 1.86;
-const ENVIRONMENT_LOBE_KNEE: f32 = 0.072;
-const ENVIRONMENT_LOBE_EDGE: f32 = 0.73;   // how far a blurred box reaches past 90 degrees
-const ENVIRONMENT_LOBE_EDGE_FLUX: f32 = 2.08;
-// The same for the gradient; <= 0.012 RMS of half its range for horizon widths 0.35..0.5.
-const ENVIRONMENT_HORIZON_BLUR1: f32 = 2.3;
-const ENVIRONMENT_HORIZON_BLUR2: f32 = 2.9;
-const ENVIRONMENT_HORIZON_FADE: f32 = 0.33;
+// The gradient blurs likewise: <= 0.012 RMS of half its range for horizon widths 0.35..0.5. The constants
+// are those of src/shading/environment.rs, which evaluates what depends on roughness alone.
 
 struct EnvironmentLobe {
   direction: vec4<f32>,   // xyz: unit, to the middle of the box; w: flux factor at roughness 0
   tangent: vec4<f32>,     // xyz: unit, along the box; w: width as a sine
   bitangent: vec4<f32>,   // xyz: unit, across the box; w: width as a sine
   color: vec4<f32>,       // rgb: peak radiance
+}
+
+// The blur of one roughness, computed once for each material (src/shading/environment.rs).
+struct EnvironmentBlur {
+  lobes: array<vec4<f32>, 3>,   // falloff along and across, over 4; square of the soft edge; peak with its flux
+  horizon: vec4<f32>,           // height = y w sqrt(x / (y'^2 y + z)), as (x, y, z, w)
 }
 
 struct Environment {
@@ -47,51 +47,23 @@ fn environment_diffuse(n: vec3<f32>) -> vec3<f32> {
   return max(constant_linear + quadratic, vec3(0.0));
 }
 
-// Flux of a box per axis, over pi: 1 for a lobe without falloff, about 4 w^2 / 3 for a narrow one.
-fn environment_flux(falloff: f32) -> f32 {
-  let t = 1.0 + 0.25 * falloff;
-  return (1.0 + t + t * t) / (3.0 * t * t * t);
-}
-
-// 1 / w'^2 of a box of width w.
-fn environment_falloff(width: f32, alpha: f32) -> f32 {
-  let alpha2 = alpha * alpha;
-  let open = 1.0 - alpha2;
-  let blur = ENVIRONMENT_LOBE_BLUR * alpha2 * (1.0 + width / (alpha + ENVIRONMENT_LOBE_KNEE * width));
-  return open / (open * width * width + blur);
-}
-
-// Share of the peak radiance of one box in direction r.
-fn environment_lobe(lobe: EnvironmentLobe, r: vec3<f32>, alpha: f32) -> f32 {
-  let along = environment_falloff(lobe.tangent.w, alpha);
-  let across = environment_falloff(lobe.bitangent.w, alpha);
-  let edge2 = ENVIRONMENT_LOBE_EDGE * alpha * alpha * lobe.tangent.w * lobe.bitangent.w;
-  let flux = sqrt(lobe.direction.w / (environment_flux(along) * environment_flux(across)));
+// Share of the peak radiance of one box in direction r; `blur` is its entry of EnvironmentBlur.
+fn environment_lobe(lobe: EnvironmentLobe, blur: vec4<f32>, r: vec3<f32>) -> f32 {
   let x = dot(r, lobe.tangent.xyz);
   let y = dot(r, lobe.bitangent.xyz);
   let z = dot(r, lobe.direction.xyz);
-  let facing = 0.5 * (z + sqrt(z * z + edge2)) / (1.0 + ENVIRONMENT_LOBE_EDGE_FLUX * edge2);
-  let t = 1.0 + 0.25 * (along * x * x + across * y * y);
+  let facing = z + sqrt(z * z + blur.z);
+  let t = 1.0 + blur.x * x * x + blur.y * y * y;
   let t2 = t * t;
-  return max(flux * facing, 0.0) / (t2 * t2);
-}
-
-// Where between ground (-1) and zenith (1) direction r looks.
-fn environment_height(width: f32, up: f32, alpha: f32) -> f32 {
-  let alpha2 = alpha * alpha;
-  let open = 1.0 - alpha2;
-  let blur = ENVIRONMENT_HORIZON_BLUR1 * alpha * width + ENVIRONMENT_HORIZON_BLUR2 * alpha2;
-  let scale = (open * (1.0 + width * width) + blur) / (open * (up * up + width * width) + blur);
-  return up * sqrt(scale) * (1.0 - ENVIRONMENT_HORIZON_FADE * alpha * width);
+  return max(blur.w * facing, 0.0) / (t2 * t2);
 }
 
 // Radiance around unit direction r, averaged over the GGX lobe of a viewer who looks along the normal.
-fn environment_specular(r: vec3<f32>, roughness: f32) -> vec3<f32> {
-  let alpha = roughness * roughness;
-  let height = environment_height(environment.zenith.w, r.y, alpha);
+fn environment_specular(r: vec3<f32>, blur: EnvironmentBlur) -> vec3<f32> {
+  let height = r.y * blur.horizon.w * sqrt(blur.horizon.x / (blur.horizon.y * r.y * r.y + blur.horizon.z));
   var radiance = mix(environment.ground.rgb, environment.zenith.rgb, 0.5 + 0.5 * height);
   for (var i = 0u; i < ENVIRONMENT_NUM_LOBES; i++) {
-    radiance += environment.lobes[i].color.rgb * environment_lobe(environment.lobes[i], r, alpha);
+    radiance += environment.lobes[i].color.rgb * environment_lobe(environment.lobes[i], blur.lobes[i], r);
   }
   return radiance;
 }

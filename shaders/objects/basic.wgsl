@@ -10,6 +10,7 @@ struct BasicMaterial {
   metallic: f32,
   opacity: f32,           // for the blending stage
   exposure_factor: f32,   // 2^stops
+  blur: EnvironmentBlur,  // of the environment, for this smoothness
 }
 
 // Direction in which a rough lobe sees the environment: it leans from the mirror direction r towards
@@ -34,10 +35,10 @@ fn basic_direct(s: Surface, b: BrdfSurface) -> vec3<f32> {
 }
 
 // Light of the environment, linear, before `ambient_light()`.
-fn basic_environment(s: Surface, b: BrdfSurface) -> vec3<f32> {
+fn basic_environment(s: Surface, b: BrdfSurface, blur: EnvironmentBlur) -> vec3<f32> {
   let r = reflect(-s.to_viewer, s.normal_view);
   let seen = basic_dominant_direction(s.normal_view, r, b.roughness);
-  return b.diffuse_albedo * environment_diffuse(s.normal_view) + b.specular_albedo * environment_specular(seen, b.roughness);
+  return b.diffuse_albedo * environment_diffuse(s.normal_view) + b.specular_albedo * environment_specular(seen, blur);
 }
 
 // Tone-mapped linear light, 0..1.
@@ -47,7 +48,7 @@ fn basic_shade(s: Surface, m: BasicMaterial) -> vec3<f32> {
   var radiance = basic_direct(s, b);
   let ambient = ambient_light();
   if any(ambient > vec3(0.0)) {
-    radiance += ambient * basic_environment(s, b);
+    radiance += ambient * basic_environment(s, b, m.blur);
   }
   return tone_map_pbr_neutral(radiance * m.exposure_factor);
 }

@@ -3,7 +3,7 @@
 //! Reads the table of [`super::brdf_table`] and the uniform of [`super::environment`]. Source: [Burley2012 §5], named by
 //! [Murray2016 §4.2]. Shader: `shaders/objects/basic.wgsl`. Twin: `tests/twins/basic.rs`.
 
-use super::environment::{Environment, EnvironmentLobe, Studio};
+use super::environment::{Environment, EnvironmentBlur, EnvironmentLobe, Studio};
 use super::{BASE_COLOR, MaterialContext, ObjectShader, Resource, ResourceData, brdf_table};
 use crate::config::param::{Param, Values};
 use crate::gpu::{GpuStruct, StructInfo, Wgsl};
@@ -29,6 +29,22 @@ gpu_struct! {
         pub opacity: f32,
         /// Factor on radiance before tone mapping, 2^stops.
         pub exposure_factor: f32,
+        /// How far this smoothness blurs the environment.
+        pub blur: EnvironmentBlur,
+    }
+}
+
+impl BasicMaterial {
+    /// A material in the neutral studio.
+    pub fn new(smoothness: f32, metallic: f32, opacity: f32, exposure_factor: f32) -> BasicMaterial {
+        let roughness = (1.0 - smoothness).max(brdf_table::ROUGHNESS_MIN);
+        BasicMaterial {
+            smoothness,
+            metallic,
+            opacity,
+            exposure_factor,
+            blur: EnvironmentBlur::new(&Studio::neutral_shape(), roughness),
+        }
     }
 }
 
@@ -58,13 +74,13 @@ impl ObjectShader for Basic {
         BasicMaterial::info()
     }
     fn material(&self, values: &Values, context: &MaterialContext) -> Vec<u8> {
-        bytemuck::bytes_of(&BasicMaterial {
-            smoothness: values.number("smoothness") as f32,
-            metallic: values.number("metallic") as f32,
-            opacity: values.number("opacity") as f32,
-            exposure_factor: context.exposure_factor,
-        })
-        .to_vec()
+        let material = BasicMaterial::new(
+            values.number("smoothness") as f32,
+            values.number("metallic") as f32,
+            values.number("opacity") as f32,
+            context.exposure_factor,
+        );
+        bytemuck::bytes_of(&material).to_vec()
     }
     fn resources(&self) -> &'static [Resource] {
         const RESOURCES: &[Resource] = &[
@@ -80,6 +96,6 @@ impl ObjectShader for Basic {
         RESOURCES
     }
     fn resource_infos(&self) -> Vec<StructInfo> {
-        vec![EnvironmentLobe::info(), Environment::info()]
+        vec![EnvironmentLobe::info(), EnvironmentBlur::info(), Environment::info()]
     }
 }

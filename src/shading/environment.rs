@@ -57,6 +57,63 @@ crate::gpu_struct! {
 
 crate::gpu_struct! {
     "lib/environment.wgsl",
+    /// What one roughness makes of the environment: the terms of its closed forms that no pixel changes.
+    pub struct EnvironmentBlur {
+        /// Of each box: falloff along and across, over 4; square of its soft edge; peak with its flux.
+        pub lobes: [[f32; 4]; NUM_LOBES],
+        /// Of the gradient: height = y w sqrt(x / (y'^2 y + z)).
+        pub horizon: [f32; 4],
+    }
+}
+
+// Constants of the blurred forms, fitted by random search to integrated GGX lobes; see environment.wgsl.
+const LOBE_BLUR: f32 = 1.86;
+const LOBE_KNEE: f32 = 0.072;
+/// How far a blurred box reaches past 90 degrees.
+const LOBE_EDGE: f32 = 0.73;
+const LOBE_EDGE_FLUX: f32 = 2.08;
+const HORIZON_BLUR1: f32 = 2.3;
+const HORIZON_BLUR2: f32 = 2.9;
+const HORIZON_FADE: f32 = 0.33;
+
+impl EnvironmentBlur {
+    /// The blur of this studio's parts by GGX of a perceptual roughness, 0..=1.
+    pub fn new(studio: &Studio, roughness: f32) -> EnvironmentBlur {
+        let alpha = roughness * roughness;
+        let alpha2 = alpha * alpha;
+        let open = 1.0 - alpha2;
+        // 1 / w'^2 of a box of width w.
+        let falloff = |width: f32| {
+            let blur = LOBE_BLUR * alpha2 * (1.0 + width / (alpha + LOBE_KNEE * width));
+            open / (open * width * width + blur)
+        };
+        // Flux of a box per axis, over pi: 1 for a lobe without falloff, about 4 w^2 / 3 for a narrow one.
+        let flux = |falloff: f32| {
+            let t = 1.0 + 0.25 * falloff;
+            (1.0 + t + t * t) / (3.0 * t * t * t)
+        };
+        let lobe = |lobe: &SoftBox| {
+            let [along, across] = lobe.widths.map(falloff);
+            let edge2 = LOBE_EDGE * alpha * alpha * lobe.widths[0] * lobe.widths[1];
+            let kept = (lobe.lobe().direction[3] / (flux(along) * flux(across))).sqrt();
+            [0.25 * along, 0.25 * across, edge2, 0.5 * kept / (1.0 + LOBE_EDGE_FLUX * edge2)]
+        };
+        let width = studio.horizon_width;
+        let blur = HORIZON_BLUR1 * alpha * width + HORIZON_BLUR2 * alpha2;
+        EnvironmentBlur {
+            lobes: std::array::from_fn(|index| lobe(&studio.lobes[index])),
+            horizon: [
+                open * (1.0 + width * width) + blur,
+                open,
+                open * width * width + blur,
+                1.0 - HORIZON_FADE * alpha * width,
+            ],
+        }
+    }
+}
+
+crate::gpu_struct! {
+    "lib/environment.wgsl",
     /// What `environment.wgsl` reads.
     pub struct Environment {
         /// rgb: irradiance / pi as a polynomial of the normal: 1, y, z, x, xy, yz, 3z^2 - 1, xz, x^2 - y^2.
@@ -104,7 +161,12 @@ impl Studio {
     /// right and behind draws a rim that parts dark objects from a dark background, a weak one below
     /// right keeps the shadow side from closing. Chosen by eye on plastic and metal spheres.
     pub fn neutral() -> Self {
-        let studio = Self {
+        Self::neutral_shape().with_mean_radiance(1.0)
+    }
+
+    /// The neutral studio before its brightness is set: what its blurs depend on.
+    pub fn neutral_shape() -> Self {
+        Self {
             zenith: Vec3::splat(0.9),
             ground: Vec3::splat(0.28),
             horizon_width: 0.4,
@@ -128,8 +190,7 @@ impl Studio {
                     color: Vec3::splat(0.5),
                 },
             ],
-        };
-        studio.with_mean_radiance(1.0)
+        }
     }
 
     /// Radiance 1 from everywhere, for furnace tests.

@@ -5,6 +5,7 @@ use super::environment::{environment_diffuse, environment_specular};
 use glam::Vec3;
 use restyle::shading::{
     basic::BasicMaterial,
+    brdf_table::ROUGHNESS_MIN,
     environment::{Environment, Studio},
 };
 
@@ -65,11 +66,13 @@ fn basic_direct(scene: &Scene, s: &Surface, b: &BrdfSurface) -> Vec3 {
         .sum()
 }
 
-pub fn basic_environment(scene: &Scene, s: &Surface, b: &BrdfSurface) -> Vec3 {
+/// The environment is blurred by the material's own roughness, in the shader by terms computed once; here in full.
+pub fn basic_environment(scene: &Scene, s: &Surface, b: &BrdfSurface, m: &BasicMaterial) -> Vec3 {
+    let roughness = (1.0 - m.smoothness).max(ROUGHNESS_MIN);
     let r = 2.0 * s.normal_view.dot(s.to_viewer) * s.normal_view - s.to_viewer;
     let seen = basic_dominant_direction(s.normal_view, r, b.roughness);
     b.diffuse_albedo * environment_diffuse(&scene.environment, s.normal_view)
-        + b.specular_albedo * environment_specular(&scene.environment, seen, b.roughness)
+        + b.specular_albedo * environment_specular(&scene.environment, seen, roughness)
 }
 
 pub fn basic_shade(scene: &Scene, s: &Surface, m: &BasicMaterial) -> Vec3 {
@@ -77,14 +80,14 @@ pub fn basic_shade(scene: &Scene, s: &Surface, m: &BasicMaterial) -> Vec3 {
     let b = brdf_prepare(s.base_color, m.metallic, roughness, s.normal_view.dot(s.to_viewer));
     let mut radiance = basic_direct(scene, s, &b);
     if scene.ambient_light.cmpgt(Vec3::ZERO).any() {
-        radiance += scene.ambient_light * basic_environment(scene, s, &b);
+        radiance += scene.ambient_light * basic_environment(scene, s, &b, m);
     }
     tone_map_pbr_neutral(radiance * m.exposure_factor)
 }
 
 /// An opaque material; `stops` is the exposure.
 pub fn material(smoothness: f32, metallic: f32, stops: f32) -> BasicMaterial {
-    BasicMaterial { smoothness, metallic, opacity: 1.0, exposure_factor: stops.exp2() }
+    BasicMaterial::new(smoothness, metallic, 1.0, stops.exp2())
 }
 
 fn facing(base_color: Vec3) -> Surface {

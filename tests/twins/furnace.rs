@@ -88,7 +88,7 @@ fn a_white_sphere_vanishes_in_a_white_furnace() {
             let s = surface_of(&surface::surface_at(&view, center_px(pixel), &sphere, &hit, Vec3::ONE, 1.0));
             let roughness = brdf_filtered_roughness(1.0 - smoothness, s.normal_dx, s.normal_dy);
             let b = brdf_prepare(Vec3::ONE, metallic, roughness, s.normal_view.dot(s.to_viewer));
-            let radiance = basic_environment(&scene, &s, &b);
+            let radiance = basic_environment(&scene, &s, &b, &material(smoothness, metallic, 0.0));
             (least, most) = (least.min(radiance.min_element()), most.max(radiance.max_element()));
             compared += 1;
         }
