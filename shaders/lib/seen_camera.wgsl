@@ -5,6 +5,6 @@ struct VisibilityOut {
     @builtin(frag_depth) depth: f32,
 }
 
-fn visibility_out(id: u32, t: f32) -> VisibilityOut {
+fn visibility_out(id: u32, t: f32, outline_t: f32) -> VisibilityOut {
     return VisibilityOut(id, depth_value(view, t));
 }

@@ -1,7 +1,8 @@
 // Shadows from maps that hold, for each texel, the id and depth of what the light sees first.
 // Hard: the ids near a point name the few objects that can shade it, and an exact ray cast against
 // those gives an edge that does not depend on the map's resolution (ours).
-// Soft: average depth of what blocks, then a filter as wide as the penumbra [Fernando2005 §2].
+// Soft: average depth of what blocks, then a filter as wide as the penumbra [Fernando2005 §2]. What blocks
+// is the outline of an object, not the front that the map holds: the map has the depth of both (ours).
 // A convex object never shades itself: its unlit side is found by n.l, so there is no bias for it.
 
 const MAX_SHADOWS: u32 = 4u;
@@ -60,35 +61,41 @@ fn shadow_light(light: Light, s: Surface) -> f32 {
     // Two texels: neighbouring objects that touch do not shade each other's seam.
     let near_enough = t - 2.0 * texel_light;
     // The widest penumbra: as if the blocker were the nearest thing that the light can see.
-    let reach = light.softness_tan * (t - light_view.near) / texel_light;
+    // A point light has its angular diameter as seen from here, hence the quotient of the depths.
+    let nearest = mix(t / light_view.near, 1.0, light_view.orthographic);
+    let reach = light.softness_tan * (t - light_view.near) * nearest / texel_light;
     let turn = view.sample_rotation_rad + 6.2831853 * interleaved_noise(place_px);
     var blocker_sum = 0.0;
     var blockers = 0.0;
     for (var i = 0u; i < SOFT_TAPS; i++) {
-        let blocker = shadow_tap(layer, place_px + reach * disc_tap(i, turn), last, s.id);
-        if blocker > 0.0 && blocker < near_enough {
-            blocker_sum += blocker;
+        let tap = shadow_tap(light_view, layer, place_px + reach * disc_tap(i, turn), last, s.id);
+        if tap.x < near_enough {
+            blocker_sum += min(tap.y, near_enough);
             blockers += 1.0;
         }
     }
     if blockers == 0.0 { return 1.0; }
     let blocker_t = blocker_sum / blockers;
     // Similar triangles: half the penumbra, seen from the blocker towards the receiver.
-    let wide = max(light.softness_tan * (t - blocker_t) / texel_light, 0.5);
+    let quotient = mix(t / blocker_t, 1.0, light_view.orthographic);
+    let wide = max(light.softness_tan * (t - blocker_t) * quotient / texel_light, 0.5);
     var open = 0.0;
     for (var i = 0u; i < SOFT_TAPS; i++) {
-        let blocker = shadow_tap(layer, place_px + wide * disc_tap(i, turn), last, s.id);
-        if blocker <= 0.0 || blocker >= near_enough { open += 1.0; }
+        let tap = shadow_tap(light_view, layer, place_px + wide * disc_tap(i, turn), last, s.id);
+        if tap.x >= near_enough { open += 1.0; }
     }
     return open / f32(SOFT_TAPS);
 }
 
-// Depth of what the light sees at a place; 0 where that is nothing, outside, or the receiver itself.
-fn shadow_tap(layer: i32, place_px: vec2<f32>, last: vec2<i32>, own: u32) -> f32 {
+// Depths of the surface and of the outline that the light sees at a place; the far end where that is nothing, outside,
+// or the receiver itself.
+fn shadow_tap(light_view: View, layer: i32, place_px: vec2<f32>, last: vec2<i32>, own: u32) -> vec2<f32> {
     let texel = vec2<i32>(floor(place_px));
-    if any(texel < vec2<i32>(0)) || any(texel > last) { return 0.0; }
-    let seen = textureLoad(shadow_maps, texel, layer, 0).xy;
-    return select(bitcast<f32>(seen.y), 0.0, seen.x == 0u || seen.x == own);
+    let inside = clamp(texel, vec2<i32>(0), last);
+    let seen = textureLoad(shadow_maps, inside, layer, 0).xy;
+    let depths = light_view.near + (light_view.far - light_view.near) * unpack2x16unorm(seen.y);
+    let nothing = seen.x == 0u || seen.x == own || any(texel != inside);
+    return select(depths, vec2<f32>(light_view.far), nothing);
 }
 
 // Points spread evenly over the unit disc on a spiral of the golden angle [Vogel1979 eq. 1].

@@ -26,7 +26,8 @@ struct View {
     sample_weight: f32,
     // Side of the square that one sample stands for, in pixels: 1 over the root of their number.
     footprint_px: f32,
-    _pad0: f32,
+    // Depth beyond which nothing lies.
+    far: f32,
 }
 
 struct Ray {

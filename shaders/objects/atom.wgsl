@@ -68,5 +68,5 @@ fn atom_fragment(in: AtomVarying) -> VisibilityOut {
         }
     }
     if !seen { discard; }
-    return visibility_out(id, depth);
+    return visibility_out(id, depth, -in.sphere.z);
 }

@@ -68,19 +68,26 @@ fn connector_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index)
     return out;
 }
 
+// Depth of the axis beside a hit: there its outline lies.
+fn axis_depth(ray: Ray, t: f32, a: vec3<f32>, b: vec3<f32>) -> f32 {
+    let along = b - a;
+    let share = dot(ray.origin + t * ray.direction - a, along) / dot(along, along);
+    return -(a.z + clamp(share, 0.0, 1.0) * along.z);
+}
+
 @fragment
 fn connector_fragment(in: ConnectorVarying) -> VisibilityOut {
     let ray = ray_at(view, in.position.xy);
     let t = first_beyond(cone_span(ray, in.a.xyz, in.b.xyz, in.radius, in.radius), view.near);
     if t > 0.0 {
-        return visibility_out(make_id(KIND_CONNECTOR, in.index), t);
+        return visibility_out(make_id(KIND_CONNECTOR, in.index), t, axis_depth(ray, t, in.a.xyz, in.b.xyz));
     }
     if HULL && in.a.w > 0.0 {
         let span = cone_span(ray, in.a.xyz, in.b.xyz, in.a.w, in.b.w);
         if span.x <= span.y && span.x > view.near {
-            return visibility_out(make_id(KIND_CONNECTOR_HULL, in.index), span.y);
+            return visibility_out(make_id(KIND_CONNECTOR_HULL, in.index), span.y, span.y);
         }
     }
     discard;
-    return visibility_out(0u, 1.0);
+    return visibility_out(0u, 1.0, 1.0);
 }

@@ -33,8 +33,8 @@ gpu_struct! {
         pub sample_weight: f32,
         /// Side of the square that one sample stands for, in pixels.
         pub footprint_px: f32,
-        /// Padding.
-        pub _pad0: f32,
+        /// Depth beyond which nothing lies.
+        pub far: f32,
     }
 }
 
@@ -62,7 +62,7 @@ impl View {
             sample_rotation_rad: 0.0,
             sample_weight: 1.0,
             footprint_px: 1.0,
-            _pad0: 0.0,
+            far: camera.far,
         }
     }
 

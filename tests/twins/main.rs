@@ -10,6 +10,7 @@ mod impostors;
 mod outlines;
 mod output;
 mod sampling;
+mod shadows;
 mod surface;
 mod toon;
 mod truth;
