@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# Draws the plates of this folder anew. Needs ImageMagick (`convert`) beside what the program needs.
+set -euo pipefail
+cd "$(dirname "$0")"
+restyle=../../target/release/restyle
+(cd ../.. && cargo build --release --quiet)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# One sphere, and two joined by a connector.
+printf '1\none atom\nC 0 0 0\n' > "$work/sphere.xyz"
+printf '2\ntwo atoms\nC -0.7 0 0\nC 0.7 0 0\n' > "$work/pair.xyz"
+
+# Fig. 3 of Prost 2016: alpha 0.5, beta 0.5, gamma 2, and 2, 4 and 8 steps.
+toon() { # NAME PROPERTIES SCENE SIZE GEOMETRY
+  cat > "$work/$1.json" <<JSON
+{ "camera": { "bgcolor": "white", "fov": 25, "zoom": ${6:-1} }, "geometry": $5,
+  "mapping": { "*": "s" },
+  "shaders": [ { "name": "s", "shader": "toon", "properties": { $2 } } ],
+  "lights": [ { "type": "directional", "position": [-1, 1, 1.2] } ] }
+JSON
+  "$restyle" render "$work/$3.xyz" -s "$work/$1.json" -o "$work/$1.png" --size "$4"
+}
+ball='{ "atom": "vdw", "scale": 1 }'
+pair='{ "atom": "vdw", "scale": 0.32, "bond_radius": "0.22A" }'
+for steps in 2 4 8; do
+  toon "steps$steps" "\"base_color\": \"#4aa3df\", \"scale\": 0.5, \"bias\": 0.5, \"exponent\": 2, \"steps\": $steps, \"levels\": \"full\"" sphere 320x320 "$ball"
+done
+convert "$work"/steps{2,4,8}.png +append -strip -colors 255 png8:fig3_steps.png
+
+# Fig. 4: outlines by dot product (upper row) and by hull (lower row), growing.
+for bias in 0.25 0.4 0.5; do
+  toon "dot$bias" "\"base_color\": \"#f2c230\", \"steps\": 3, \"levels\": \"centre\", \"outline_bias\": $bias" pair 420x240 "$pair" 1.9
+done
+for size in 4 12 24; do
+  toon "hull$size" "\"base_color\": \"#f2c230\", \"steps\": 3, \"levels\": \"centre\", \"hull_size\": \"${size}pt\"" pair 420x240 "$pair" 1.9
+done
+convert \( "$work"/dot{0.25,0.4,0.5}.png +append \) \( "$work"/hull{4,12,24}.png +append \) -append -strip -colors 255 png8:fig4_outlines.png
+
+# Table 1: the four looks on the four molecules.
+"$restyle" gallery c60 arsenic_trioxide anthracene magnesium -o "$work/gallery" --size 300x300 2>/dev/null >/dev/null
+for molecule in c60 arsenic_trioxide anthracene magnesium; do
+  convert "$work/gallery/$molecule".{advertisement,education,scientific,future}.png +append "$work/row_$molecule.png"
+done
+convert "$work"/row_{c60,arsenic_trioxide,anthracene,magnesium}.png -append -strip -colors 255 png8:gallery.png
+ls -l -- *.png
