@@ -112,7 +112,7 @@ impl Seen {
 }
 
 impl Tiles {
-    /// Tiles a third as wide as the median atom's radius, so that an atom covers some; none where atoms are too small
+    /// Tiles a sixth as wide as the median atom's radius, so that an atom covers many; none where atoms are too small
     /// for that, or there are none.
     fn new(view: &View, atoms: &[Ball]) -> Option<Tiles> {
         let mut radii: Vec<f32> = atoms.iter().map(|atom| atom.radius).collect();
@@ -124,7 +124,7 @@ impl Tiles {
         let matrix = view.matrix();
         let depth = -matrix.transform_point3(atoms[middle].center).z;
         let scale = if view.orthographic > 0.5 { 1.0 } else { 1.0 / depth.max(view.near) };
-        let size_px = (radius * scale / view.pixel_view / 3.0).clamp(0.0, 32.0);
+        let size_px = (radius * scale / view.pixel_view / 6.0).clamp(0.0, 32.0);
         if size_px < 1.0 {
             return None;
         }
