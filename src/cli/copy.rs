@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use super::Failure;
+use super::{Failure, answer, inputs};
 use crate::scene::write_whole;
 use crate::shipped;
 
@@ -17,8 +17,7 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let Some(look) = shipped::find(shipped::LOOKS, &args.look) else {
-        let names: Vec<&str> = shipped::LOOKS.iter().map(|look| look.name).collect();
-        return Err(Failure::input(format!("there is no look {:?}; shipped: {}", args.look, names.join(", "))));
+        return Err(inputs::unknown("look", &args.look, shipped::LOOKS));
     };
     let file = args.file.display();
     if args.file.exists() {
@@ -26,6 +25,5 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     }
     write_whole(&args.file, |writer| writer.write_all(look.bytes))
         .map_err(|error| Failure::input(super::render::cannot_write(&args.file, &error)))?;
-    println!("{file}");
-    Ok(())
+    answer(file)
 }

@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use super::inputs::{self, Size};
 use super::render::{cannot_write, progress_bar};
-use super::{Failure, render};
+use super::{Failure, answer, tell};
 use crate::config::Style;
 use crate::engine::{Engine, Gpu, Request};
 use crate::scene::{LoadOptions, ModelChoice, Scene, write_whole};
@@ -55,28 +55,37 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         styles.push(Named { label: stem.clone(), stem, value: inputs::load_style(name)? });
     }
     let mut scenes: Vec<Named<Scene>> = Vec::new();
+    // What every cell of a look or a molecule shares is told once.
+    let mut told: Vec<String> = Vec::new();
     for name in &scene_names {
         let stem = free_stem(name, scenes.iter().map(|scene| scene.stem.as_str()));
-        scenes.push(Named { label: stem.replace('_', " "), stem, value: inputs::load_scene(name, options)?.scene });
+        let scene = inputs::load_scene(name, options)?.scene;
+        told.extend(inputs::scene_warnings(&scene, name));
+        scenes.push(Named { label: stem.replace('_', " "), stem, value: scene });
     }
+    for style in &styles {
+        told.extend(style.value.warnings.iter().map(ToString::to_string));
+    }
+    let pictures = scenes.iter().flat_map(|scene| styles.iter().map(|style| file_name(scene, style)));
+    let outputs: Vec<PathBuf> = pictures.chain(["index.html".to_owned()]).map(|file| args.output.join(file)).collect();
+    let given: Vec<(&str, &Path)> = scene_names
+        .iter()
+        .map(|name| ("scene", Path::new(name)))
+        .chain(styles.iter().flat_map(|style| style.value.files.iter().map(|file| ("style", file.as_path()))))
+        .collect();
+    inputs::check_outputs(outputs.iter().map(PathBuf::as_path), &given)?;
     let gpu = Arc::new(Gpu::open()?);
     let adapter = gpu.info.name.clone();
     std::fs::create_dir_all(&args.output).map_err(|error| Failure::input(cannot_write(&args.output, &error)))?;
 
-    // A note that every cell of a look shares is told once.
-    let mut told: Vec<String> = Vec::new();
+    let mut seen = std::collections::HashSet::new();
+    told.into_iter().filter(|line| seen.insert(line.clone())).for_each(tell);
     let bar = progress_bar((styles.len() * scenes.len()) as u64 + 9, false);
     bar.set_length((styles.len() * scenes.len()) as u64);
     let mut engine: Option<Engine> = None;
     for scene in &scenes {
         let mut fresh_scene = true;
         for style in &styles {
-            for warning in style.value.warnings.iter().map(ToString::to_string) {
-                if !told.contains(&warning) {
-                    bar.suspend(|| eprintln!("{warning}"));
-                    told.push(warning);
-                }
-            }
             let engine = match &mut engine {
                 Some(engine) => {
                     if fresh_scene {
@@ -99,25 +108,28 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let sheet = args.output.join("index.html");
     let page = contact_sheet(&scenes, &styles, args, &adapter);
     write_whole(&sheet, |file| file.write_all(page.as_bytes()))
-        .map_err(|error| Failure::input(render::cannot_write(&sheet, &error)))?;
-    println!(
+        .map_err(|error| Failure::input(cannot_write(&sheet, &error)))?;
+    answer(format_args!(
         "{} pictures in {:.1} s on {adapter}; open {}",
         styles.len() * scenes.len(),
         start.elapsed().as_secs_f64(),
         sheet.display()
-    );
-    Ok(())
+    ))
 }
 
-/// The file's stem in letters that every file system takes, with a number where it is taken already.
+/// The file's stem in letters that every file system takes, with a number where it is taken already. It holds no dot,
+/// since dots part the names of scene and look.
 fn free_stem<'a>(name: &str, taken: impl Iterator<Item = &'a str> + Clone) -> String {
+    /// Two of them and an extension fit into the 255 bytes of a file's name.
+    const LONGEST: usize = 100;
     let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
-    let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
+    let safe = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' };
     let stem: String = stem.chars().map(safe).collect();
-    let stem = if stem.is_empty() { "unnamed".to_owned() } else { stem };
-    let mut candidate = stem.clone();
+    let stem = if stem.is_empty() { "unnamed" } else { &stem[..stem.floor_char_boundary(LONGEST)] };
+    let mut candidate = stem.to_owned();
     let mut number = 2;
-    while taken.clone().any(|other| other == candidate) {
+    // Not every file system tells upper from lower case.
+    while taken.clone().any(|other| other.to_lowercase() == candidate.to_lowercase()) {
         candidate = format!("{stem}-{number}");
         number += 1;
     }
@@ -194,6 +206,10 @@ mod tests {
         assert_eq!(free_stem("a/b c.pdb", ["x"].into_iter()), "b_c");
         assert_eq!(free_stem("a/x.pdb", ["x", "x-2"].into_iter()), "x-3");
         assert_eq!(free_stem("..", [].into_iter()), "unnamed");
+        assert_eq!(free_stem("C60.xyz", ["c60"].into_iter()), "C60-2");
+        // Else the scene a.b in the look c would be the scene a in the look b.c.
+        assert_eq!(free_stem("a.b.xyz", [].into_iter()), "a_b");
+        assert!(free_stem(&"\u{e9}".repeat(200), [].into_iter()).len() <= 100);
     }
 
     #[test]

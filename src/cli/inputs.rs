@@ -1,9 +1,9 @@
 //! Scenes, styles and sizes as the command line names them.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::Failure;
+use super::{Failure, tell};
 use crate::config::{self, Catalog, Source, Style};
 use crate::engine;
 use crate::scene::{LoadOptions, ModelChoice, Scene};
@@ -45,7 +45,7 @@ pub(crate) fn load_scene(name: &str, options: LoadOptions) -> Result<Loaded, Fai
     let start = Instant::now();
     let path = Path::new(name);
     let scene = match shipped::find(shipped::MOLECULES, name) {
-        Some(molecule) if !path.exists() => Scene::from_bytes_with(molecule.file, molecule.bytes, &options),
+        Some(molecule) if !is_shadowed(path) => Scene::from_bytes_with(molecule.file, molecule.bytes, &options),
         None if looks_like_a_name(path) => return Err(unknown("molecule", name, shipped::MOLECULES)),
         _ => Scene::load_with(path, &options),
     };
@@ -53,41 +53,78 @@ pub(crate) fn load_scene(name: &str, options: LoadOptions) -> Result<Loaded, Fai
     Ok(Loaded { scene, ms: start.elapsed().as_secs_f64() * 1e3 })
 }
 
-/// Loads a style file, or a shipped look by its name. Warnings go to stderr.
+/// Loads a style file, or a shipped look by its name.
 pub(crate) fn load_style(name: &str) -> Result<Style, Failure> {
     let entries = engine::catalog();
     let catalog = Catalog { shaders: &entries, kinds: engine::DRAWN_KINDS };
     let path = Path::new(name);
     let style = match shipped::find(shipped::LOOKS, name) {
-        Some(look) if !path.exists() => config::load(&Source::new(look.file, look.bytes), &catalog),
-        None if looks_like_a_name(path) => return Err(unknown("look", name, shipped::LOOKS)),
+        Some(look) if !is_shadowed(path) => config::load(&Source::new(look.file, look.bytes), &catalog),
+        None if !path.exists() => return Err(unknown("look", name, shipped::LOOKS)),
         _ => config::load_file(path, &catalog),
     };
-    let style = style.map_err(Failure::input)?;
-    Ok(style)
+    style.map_err(Failure::input)
 }
 
 /// Prints what a style says that this version passes over, and what a scene's file had mended.
-pub(crate) fn print_warnings(style: &Style, scene: &Scene) {
-    for warning in &style.warnings {
-        eprintln!("{warning}");
-    }
-    if !scene.report.is_empty() {
-        eprint!("{}", scene.report);
-    }
+pub(crate) fn print_warnings(style: &Style, scene: &Scene, scene_name: &str) {
+    style.warnings.iter().map(ToString::to_string).chain(scene_warnings(scene, scene_name)).for_each(tell);
 }
 
-fn looks_like_a_name(path: &Path) -> bool {
-    !path.exists() && path.extension().is_none() && path.components().count() == 1
+/// What a scene's file had mended, one line a kind.
+pub(crate) fn scene_warnings(scene: &Scene, scene_name: &str) -> Vec<String> {
+    scene.report.to_string().lines().map(|line| format!("{scene_name}: warning: {line}")).collect()
 }
 
-fn unknown(what: &str, name: &str, among: &'static [Shipped]) -> Failure {
+/// A look or molecule that is not shipped, with those that are.
+pub(crate) fn unknown(what: &str, name: &str, among: &'static [Shipped]) -> Failure {
     let nearest = among
         .iter()
         .map(|shipped| (strsim::damerau_levenshtein(shipped.name, name), shipped.name))
         .min()
         .filter(|(distance, nearest)| *distance <= nearest.len() / 2);
-    let hint = nearest.map_or(String::new(), |(_, nearest)| format!("; did you mean {nearest:?}?"));
+    let hint = nearest.map_or(String::new(), |(_, nearest)| format!("did you mean {nearest:?}? "));
     let names: Vec<&str> = among.iter().map(|shipped| shipped.name).collect();
-    Failure::input(format!("{name}: no such file, and no {what} of this name{hint} shipped: {}", names.join(", ")))
+    Failure::input(format!("{name:?}: no such file, and no {what} of this name; {hint}shipped: {}", names.join(", ")))
+}
+
+/// Refuses outputs that would overwrite an input or one another. Devices and pipes take more than one.
+pub(crate) fn check_outputs<'a>(
+    outputs: impl Iterator<Item = &'a Path>,
+    inputs: &[(&str, &Path)],
+) -> Result<(), Failure> {
+    let inputs: Vec<_> = inputs.iter().map(|(what, path)| (*what, place(path))).collect();
+    let mut former: Vec<PathBuf> = Vec::new();
+    for output in outputs {
+        if output.exists() && !output.is_file() {
+            continue;
+        }
+        let (shown, output) = (output.display(), place(output));
+        if let Some((what, _)) = inputs.iter().find(|(_, input)| *input == output) {
+            return Err(Failure::usage(format!("{shown}: is the {what} itself; write to another file")));
+        }
+        if former.contains(&output) {
+            return Err(Failure::usage(format!("{shown}: is named for two outputs; write each to its own file")));
+        }
+        former.push(output);
+    }
+    Ok(())
+}
+
+/// One path for all the ways to write it; a file that is not there yet is found by its folder.
+fn place(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+        path.file_name().map_or_else(|| folder.clone(), |name| folder.join(name))
+    })
+}
+
+/// Whether a file of the name of a shipped one lies here; a folder does not count.
+fn is_shadowed(path: &Path) -> bool {
+    path.exists() && !path.is_dir()
+}
+
+fn looks_like_a_name(path: &Path) -> bool {
+    !path.exists() && path.extension().is_none() && path.components().count() <= 1
 }

@@ -6,6 +6,7 @@ mod inputs;
 mod render;
 
 use std::fmt::Display;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -75,8 +76,25 @@ pub fn run() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("{}", failure.message);
+            tell(&failure.message);
             ExitCode::from(failure.code)
         }
     }
+}
+
+/// Prints a line of results to stdout. A reader that has gone away, such as `head`, is no failure.
+fn answer(line: impl Display) -> Result<(), Failure> {
+    match writeln!(io::stdout(), "{line}") {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure::input(format!("standard output: cannot be written: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Prints a message to stderr. Where that cannot be written there is nobody left to tell.
+fn tell(message: impl Display) {
+    // Names of files may hold what a terminal would obey.
+    let shown = message.to_string().replace(|c: char| c.is_control() && c != '\n', "?");
+    let _ = writeln!(io::stderr(), "{shown}");
 }

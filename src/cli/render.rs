@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::inputs::{self, Size};
-use super::{Failure, inputs::Loaded};
+use super::{Failure, answer, inputs::Loaded, tell};
 use crate::config::Style;
 use crate::engine::{Engine, Gpu, GpuError, MAX_SAMPLES, Request};
 use crate::scene::{AovName, LoadOptions, ModelChoice};
@@ -65,7 +65,12 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         return Err(Failure::usage("nothing to write: give -o OUT.png, --aov NAME=FILE.exr or --json"));
     }
     let outputs = args.output.iter().chain(args.aov.iter().map(|(_, file)| file));
-    outputs.map(PathBuf::as_path).try_for_each(check_writable)?;
+    let outputs: Vec<&Path> = outputs.map(PathBuf::as_path).collect();
+    outputs.iter().try_for_each(|output| check_writable(output))?;
+    inputs::check_outputs(
+        outputs.iter().copied(),
+        &[("scene", Path::new(&args.scene)), ("style", Path::new(&args.style))],
+    )?;
     let options = LoadOptions { model: args.model.unwrap_or(ModelChoice::First) };
 
     // The device opens while the files are read.
@@ -79,16 +84,18 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         (gpu.join(), loaded, style)
     });
     let (style, loaded) = (style?, loaded?);
+    let bases: Vec<_> = style.files.iter().map(|file| ("style's base", file.as_path())).collect();
+    inputs::check_outputs(outputs.into_iter(), &bases)?;
     let (gpu, device_ms) = gpu.map_err(|_| Failure::from(GpuError::NoAdapter))?;
     let gpu = Arc::new(gpu?);
-    inputs::print_warnings(&style, &loaded.scene);
+    inputs::print_warnings(&style, &loaded.scene, &args.scene);
     let load_ms = loaded.ms;
 
     let request =
         Request { size: args.size.0, samples: args.samples, transparent: args.transparent, wide: args.bits == "16" };
     let mut engine = Engine::new(gpu, loaded.scene, style);
     if let Some(limit) = engine.limits_exceeded() {
-        eprintln!("{}: warning: {limit}", args.style);
+        tell(format!("{}: warning: {limit}", args.style));
     }
     let first = Instant::now();
     let bar = progress_bar(u64::from(args.samples), args.json);
@@ -153,7 +160,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             "triangles": counts.triangles,
             "target_bytes": targets,
         });
-        println!("{line}");
+        answer(line)?;
     }
     Ok(())
 }
@@ -181,13 +188,15 @@ fn peak_rss_mb() -> Option<f64> {
 
 /// Refuses what cannot be written before any work is done.
 fn check_writable(path: &Path) -> Result<(), Failure> {
-    if path.is_dir() {
-        return Err(Failure::input(format!("{}: is a folder; name a file in it", path.display())));
+    let shown = path.display();
+    if path.is_dir() || path.as_os_str().as_encoded_bytes().ends_with(b"/") {
+        return Err(Failure::input(format!("{shown}: is a folder; name a file in it")));
     }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.is_dir() {
-        let folder = folder.display();
-        return Err(Failure::input(format!("{}: the folder {folder} does not exist; make it first", path.display())));
+        let (folder, exists) = (folder.display(), folder.exists());
+        let wrong = if exists { "is a file, not a folder; choose another" } else { "does not exist; make it first" };
+        return Err(Failure::input(format!("{shown}: the folder {folder} {wrong}")));
     }
     Ok(())
 }
@@ -197,9 +206,14 @@ pub(super) fn cannot_write(path: &Path, error: &io::Error) -> String {
     let path = path.display();
     match error.kind() {
         io::ErrorKind::NotFound => format!("{path}: its folder does not exist; make it first"),
-        io::ErrorKind::PermissionDenied => format!("{path}: no permission to write there"),
-        io::ErrorKind::StorageFull => format!("{path}: the disk is full"),
+        io::ErrorKind::PermissionDenied => format!("{path}: no permission to write there; choose another place"),
+        io::ErrorKind::StorageFull => format!("{path}: the disk is full; free some space"),
         io::ErrorKind::IsADirectory => format!("{path}: is a folder; name a file in it"),
-        _ => format!("{path}: cannot be written: {error}"),
+        io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => {
+            format!("{path}: there is a file where a folder is needed; choose another place")
+        }
+        io::ErrorKind::InvalidFilename => format!("{path}: this name is too long or not allowed; choose another"),
+        io::ErrorKind::BrokenPipe => format!("{path}: nobody reads from it any more"),
+        _ => format!("{path}: cannot be written: {error}; choose another place"),
     }
 }

@@ -8,7 +8,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::hint::{Hint, quote};
+use super::hint::{Hint, number, quote};
 
 /// Most mistakes that are listed; the rest is counted.
 /// Ours: more than a screen holds, and a bound on the work that a hostile file causes.
@@ -101,7 +101,7 @@ pub enum Problem {
         found: String,
     },
     /// A number outside what its parameter allows.
-    #[error("{} is {value}, but must {allowed}", quote(.name))]
+    #[error("{} is {}, but must {allowed}", quote(.name), number(*.value))]
     OutOfRange {
         /// The key.
         name: String,

@@ -93,6 +93,11 @@ pub fn quote(text: &str) -> String {
     format!("\"{}\"", shorten(text))
 }
 
+/// A number as a message shows it: never hundreds of digits.
+pub(super) fn number(value: f64) -> String {
+    if value != 0.0 && !(1e-6..1e15).contains(&value.abs()) { format!("{value:e}") } else { value.to_string() }
+}
+
 pub(super) fn shorten(text: &str) -> String {
     let mut shown = String::new();
     for (i, c) in text.chars().enumerate() {
@@ -132,6 +137,12 @@ mod tests {
         assert_eq!(Hint::new("zzz", ["steps", "bias"]).to_string(), "; allowed: steps, bias");
         assert_eq!(Hint::nearest_of("stepz", ["steps"]).to_string(), "; did you mean \"steps\"?");
         assert_eq!(Hint::NONE.to_string(), "");
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        let shown = [0.0, 0.25, -1e9, 1e300, 1e-300].map(number);
+        assert_eq!(shown, ["0", "0.25", "-1000000000", "1e300", "1e-300"]);
     }
 
     #[test]

@@ -74,7 +74,7 @@ impl Node {
         match &self.value {
             Tree::Null => "null".to_owned(),
             Tree::Bool(value) => value.to_string(),
-            Tree::Number(value) => format!("the number {value}"),
+            Tree::Number(value) => format!("the number {}", super::hint::number(*value)),
             Tree::Text(text) => format!("the text {}", super::hint::quote(text)),
             Tree::List(items) if items.is_empty() => "an empty list".to_owned(),
             Tree::List(items) if items.len() == 1 => "a list of 1 value".to_owned(),

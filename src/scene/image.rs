@@ -1,7 +1,9 @@
 //! Pictures on the CPU: eight or sixteen bits a channel, and their PNG files.
 
+use std::fs::File;
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Channel values, four a pixel: straight-alpha sRGB.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -67,23 +69,38 @@ impl Image {
     }
 }
 
-/// Writes a file beside its place first, then moves it there: nothing half-written stays.
+/// Writes a file beside its place first, then moves it there: nothing half-written stays, and a former file's
+/// permissions do. A link is followed; what is no regular file, such as `/dev/null` or a pipe, is written to as it is.
 ///
 /// # Errors
 /// Whatever the file system says; the former file is then as it was.
-pub fn write_whole(
-    path: &Path,
-    content: impl FnOnce(&mut BufWriter<std::fs::File>) -> io::Result<()>,
-) -> io::Result<()> {
-    if path.is_dir() {
-        return Err(io::Error::new(io::ErrorKind::IsADirectory, "this is a folder"));
-    }
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let beside = path.with_file_name(format!(".{name}.{}.part", std::process::id()));
-    let result = std::fs::File::create(&beside).and_then(|file| {
+pub fn write_whole(path: &Path, content: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
+    // Two writers of one process do not meet in one part.
+    static PARTS: AtomicU32 = AtomicU32::new(0);
+    let write = |file: File| {
         let mut writer = BufWriter::new(file);
         content(&mut writer)?;
-        writer.flush()?;
+        writer.flush()
+    };
+    let former = match std::fs::metadata(path) {
+        Ok(former) => Some(former),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+        Err(error) => return Err(error),
+    };
+    match &former {
+        Some(former) if former.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
+        Some(former) if !former.is_file() => return write(File::options().write(true).open(path)?),
+        Some(former) if former.permissions().readonly() => return Err(io::ErrorKind::PermissionDenied.into()),
+        _ => {}
+    }
+    let path = &if former.is_some() { path.canonicalize()? } else { end_of_links(path) };
+    // A short name of its own: one made of the file's may be longer than the file system takes.
+    let part = format!(".restyle-{}-{}.part", std::process::id(), PARTS.fetch_add(1, Ordering::Relaxed));
+    let beside = path.with_file_name(part);
+    let result = File::create(&beside).and_then(write).and_then(|()| {
+        if let Some(former) = &former {
+            std::fs::set_permissions(&beside, former.permissions())?;
+        }
         std::fs::rename(&beside, path)
     });
     if result.is_err() {
@@ -91,4 +108,62 @@ pub fn write_whole(
         let _ = std::fs::remove_file(&beside);
     }
     result
+}
+
+/// Where a file will be that is not there yet, but that links may lead to.
+fn end_of_links(path: &Path) -> PathBuf {
+    /// As many as the Linux kernel follows.
+    const MOST_LINKS: usize = 40;
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        match std::fs::read_link(&path) {
+            Ok(next) => path = path.with_file_name(next),
+            Err(_) => break,
+        }
+    }
+    path
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(name: &str) -> PathBuf {
+        let folder = std::env::temp_dir().join(format!("restyle-image-{name}-{}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&folder);
+        std::fs::create_dir_all(&folder).unwrap();
+        folder
+    }
+
+    #[test]
+    fn a_failure_leaves_the_former_file_and_no_part() {
+        let folder = folder("failure");
+        let file = folder.join("a.png");
+        std::fs::write(&file, "former").unwrap();
+        let failed = write_whole(&file, |writer| {
+            writer.write_all(b"half")?;
+            Err(io::ErrorKind::StorageFull.into())
+        });
+        assert_eq!(failed.map_err(|error| error.kind()), Err(io::ErrorKind::StorageFull));
+        assert_eq!(std::fs::read(&file).unwrap(), b"former");
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1);
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_followed_and_kept() {
+        use std::os::unix::fs::symlink;
+        let folder = folder("links");
+        std::fs::create_dir(folder.join("deep")).unwrap();
+        symlink("deep/b.png", folder.join("a.png")).unwrap();
+        symlink("c.png", folder.join("deep/b.png")).unwrap();
+        write_whole(&folder.join("a.png"), |writer| writer.write_all(b"new")).unwrap();
+        assert_eq!(std::fs::read(folder.join("deep/c.png")).unwrap(), b"new");
+        assert!(folder.join("a.png").is_symlink() && folder.join("deep/b.png").is_symlink());
+        symlink("y", folder.join("x")).unwrap();
+        symlink("x", folder.join("y")).unwrap();
+        assert!(write_whole(&folder.join("x"), |_| Ok(())).is_err());
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
 }

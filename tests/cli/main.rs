@@ -1,0 +1,10 @@
+//! The built command as its own test rig: what it writes, what it refuses, with which words and exit codes.
+
+mod bad_commands;
+mod bad_outputs;
+mod bad_scenes;
+mod bad_styles;
+mod extremes;
+mod pictures;
+mod rig;
+mod shipped;

@@ -1,0 +1,41 @@
+//! `restyle copy`, and what is refused where no driver answers.
+
+use super::rig::Folder;
+use std::process::Stdio;
+
+#[test]
+fn copy_gives_the_look_and_never_overwrites() {
+    let folder = Folder::new("copy");
+    let outcome = folder.run("copy education mine.json").done();
+    assert_eq!(outcome.out, "mine.json\n");
+    let look = restyle::shipped::find(restyle::shipped::LOOKS, "education").unwrap();
+    assert_eq!(folder.read("mine.json"), look.bytes);
+    folder.write("mine.json", "changed");
+    folder.run("copy future mine.json").refused(1, "mine.json: is there already");
+    assert_eq!(folder.read("mine.json"), b"changed");
+    folder.run("copy educaton new.json").refused(1, "did you mean \"education\"?");
+    folder.run("copy education no/new.json").refused(1, "no/new.json: its folder does not exist; make it first");
+    folder.run("copy education").refused(2, "<FILE>");
+    assert_eq!(folder.names(), ["mine.json"]);
+}
+
+#[test]
+fn without_an_adapter_the_message_names_the_package() {
+    let folder = Folder::new("none");
+    let none = [("VK_DRIVER_FILES", "/nonexistent"), ("VK_ICD_FILENAMES", "/nonexistent")];
+    let run = |args: &str| folder.start(args.split_whitespace(), &none, Stdio::null(), None);
+    run("gallery c60 -o sheet").refused(3, "mesa-vulkan-drivers");
+    let outcome = run("render c60 -o out.png").refused(3, "mesa-vulkan-drivers");
+    assert!(outcome.err.contains("no graphics adapter"), "{}", outcome.err);
+    // What is wrong with the input is said first, since it would be wrong anywhere.
+    run("render c60 -s nope.json -o out.png").refused(1, "nope.json");
+    assert!(folder.names().is_empty());
+}
+
+#[test]
+fn help_and_version_need_nothing() {
+    let folder = Folder::new("help");
+    let help = folder.run("--help").done().out;
+    assert!(["render", "gallery", "copy"].iter().all(|command| help.contains(command)), "{help}");
+    assert_eq!(folder.run("--version").done().out, format!("restyle {}\n", env!("CARGO_PKG_VERSION")));
+}
