@@ -2,7 +2,7 @@
 
 use restyle::config::{Source, load};
 
-use crate::catalog::EARLY;
+use super::catalog::EARLY;
 
 fn messages(style: &str) -> String {
     match load(&Source::new("s.json", style), &EARLY) {

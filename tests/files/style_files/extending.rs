@@ -2,7 +2,7 @@
 
 use restyle::config::{ObjectKind, Source, Style, load, load_file, load_with};
 
-use crate::catalog::EARLY;
+use super::catalog::EARLY;
 
 /// Loads `own` with bases from a table of names and texts.
 fn extended(own: &str, bases: &[(&str, &str)]) -> Result<Style, String> {

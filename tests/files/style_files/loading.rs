@@ -7,7 +7,7 @@ use restyle::config::{
     Source, Space, Srgba, Style, TransparencyMethod, Value, load, load_file,
 };
 
-use crate::catalog::{EARLY, LATER};
+use super::catalog::{EARLY, LATER};
 
 fn style_of(text: &str, catalog: &Catalog<'_>) -> Style {
     load(&Source::new("s.json", text), catalog).unwrap_or_else(|mistakes| panic!("{mistakes}"))

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use restyle::config::{Source, load, load_with};
 
-use crate::catalog::{EARLY, LATER};
+use super::catalog::{EARLY, LATER};
 
 /// Mutations in all.
 const MUTATIONS: usize = 3000;
