@@ -10,7 +10,7 @@ use restyle::shading::{DEFAULT_SHADER, SHADERS, shader_index};
 use super::{assert_none, at, text};
 
 /// Shaders whose twin is still to be written.
-const WITHOUT_TWIN: &[&str] = &["toon"];
+const WITHOUT_TWIN: &[&str] = &[];
 
 #[test]
 fn names_are_unique_and_legal() {
