@@ -77,7 +77,7 @@ fn aovs_are_linear_floats_with_nothing_marked() {
         other => panic!("{other:?}"),
     }
     let color = channels("color");
-    assert_eq!(floats(&color, "A")[0], 1.0, "the background of the style is opaque");
+    assert_eq!(floats(&color, "A")[0], 0.0, "nothing is there");
     assert!(["R", "G", "B"].iter().all(|name| floats(&color, name).iter().all(|value| value.is_finite())));
 }
 

@@ -135,7 +135,7 @@ fn collect(parsed: &naga::Module, ty: Handle<Type>, into: &mut BTreeSet<Handle<T
 }
 
 /// How many yes-or-no questions a [`ShadeKey`] answers, beside its list of shaders.
-const NUM_SWITCHES: u32 = 12;
+const NUM_SWITCHES: u32 = 13;
 
 /// Answers, one a bit, of which at most one differs from the rest.
 fn covering_switches() -> impl Iterator<Item = u32> {
@@ -143,7 +143,7 @@ fn covering_switches() -> impl Iterator<Item = u32> {
 }
 
 /// Keys of the shading pass: every set of shaders with the covering answers. Any three questions are so answered in all
-/// combinations, and most combinations of all twelve are left out.
+/// combinations, and most combinations of all are left out.
 fn shade_keys() -> Vec<ShadeKey> {
     let mut keys = Vec::new();
     for shaders in 0..1u32 << SHADERS.len() {
@@ -175,6 +175,7 @@ fn shade_key(shaders: u32, switches: u32, features: u32) -> ShadeKey {
         shadows: on(7),
         soft_taps: 8,
         encode: on(8),
+        soft_taps: if on(12) { 16 } else { 0 },
         orthographic: on(11),
     }
 }

@@ -60,13 +60,13 @@ pub fn still(engine: &mut Engine, size: [u32; 2], samples: u32) -> Image {
     engine.still(&Request { wide: true, ..request(size, samples) }).expect("a still")
 }
 
-/// Linear light of an sRGB value [IEC 61966-2-1].
+/// Linear light of an sRGB value [IEC61966, part 2-1].
 pub fn linear_from_srgb(value: f32) -> f64 {
     let c = f64::from(value);
     if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }
 
-/// sRGB value of linear light [IEC 61966-2-1].
+/// sRGB value of linear light [IEC61966, part 2-1].
 pub fn srgb_from_linear(linear: f64) -> f64 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
