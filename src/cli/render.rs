@@ -94,7 +94,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let request =
         Request { size: args.size.0, samples: args.samples, transparent: args.transparent, wide: args.bits == "16" };
     let mut engine = Engine::new(gpu, loaded.scene, style);
-    if let Some(limit) = engine.limits_exceeded() {
+    for limit in engine.limits_exceeded() {
         tell(format!("{}: warning: {limit}", args.style));
     }
     let first = Instant::now();

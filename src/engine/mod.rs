@@ -6,7 +6,9 @@ mod palette;
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::config::{CatalogEntry, ObjectKind, Role, Style};
+use glam::DVec3;
+
+use crate::config::{CatalogEntry, LightKind, ObjectKind, Role, Shadow, Style};
 use crate::frame::{self, Aovs, FrameInput, Renderer, TargetBytes};
 use crate::gpu::PassTimes;
 use crate::providers::{CameraProvider, LightingProvider};
@@ -223,11 +225,33 @@ impl Engine {
         self.renderer.target_bytes()
     }
 
-    /// What the style asks of lights beyond what one frame holds, in plain words.
-    pub fn limits_exceeded(&self) -> Option<String> {
-        let count = self.style.lights.iter().filter(|light| light.kind != crate::config::LightKind::Ambient).count();
-        (count > frame::MAX_LIGHTS)
-            .then(|| format!("the style has {count} lights; only the first {} shine", frame::MAX_LIGHTS))
+    /// What the style asks of lights that a frame does not do, in plain words.
+    pub fn limits_exceeded(&self) -> Vec<String> {
+        let lights: Vec<_> = self.style.lights.iter().filter(|light| light.kind != LightKind::Ambient).collect();
+        let mut exceeded = Vec::new();
+        if lights.len() > frame::MAX_LIGHTS {
+            exceeded.push(format!("the style has {} lights; only the first {} shine", lights.len(), frame::MAX_LIGHTS));
+        }
+        let mut casting = 0;
+        for light in lights.iter().take(frame::MAX_LIGHTS).filter(|light| light.shadow != Shadow::None) {
+            let inside =
+                light.kind == LightKind::Point && DVec3::from_array(light.position).length() <= frame::SHADOWLESS_RADII;
+            if inside {
+                exceeded.push(
+                    "a point light within the scene's sphere casts no shadow; move it more than 1.02 radii away"
+                        .to_owned(),
+                );
+            } else {
+                casting += 1;
+            }
+        }
+        if casting > frame::MAX_SHADOWS {
+            exceeded.push(format!(
+                "{casting} lights cast shadows; only the shadows of the first {} are drawn",
+                frame::MAX_SHADOWS
+            ));
+        }
+        exceeded
     }
 }
 

@@ -24,7 +24,7 @@ use occlusion::Reach;
 pub use resolve::resolve_module;
 pub use shade::{Output, ShadeKey, ShaderNeeds, shade_module};
 use shade::{Shade, ShadeInputs, ShadeTarget};
-pub use shadow::{MAX_SHADOWS, ShadowView, Shadows};
+pub use shadow::{MAX_SHADOWS, SHADOWLESS_RADII, ShadowView, Shadows};
 use shadow::{ShadowMaps, ShadowPlan};
 pub use targets::TargetBytes;
 use targets::Targets;

@@ -77,6 +77,9 @@ impl ShadowPlan {
     }
 }
 
+/// A point light nearer to the scene's centre than this, in radii, casts no shadow.
+pub const SHADOWLESS_RADII: f64 = 1.02;
+
 /// Half a percent beyond the sphere, so that nothing of it touches the border of the map.
 const MARGIN: f32 = 1.005;
 
@@ -101,7 +104,7 @@ fn directional(toward_light: Vec3, center: Vec3, radius: f32) -> Camera {
 fn point(position: Vec3, center: Vec3, radius: f32) -> Option<Camera> {
     let reach = radius * MARGIN;
     let distance = position.distance(center);
-    if distance <= reach * 1.01 {
+    if distance <= SHADOWLESS_RADII as f32 * radius {
         return None;
     }
     let sine = reach / distance;

@@ -55,7 +55,7 @@ fn a_file_without_permission_is_said_to_be_one() {
     let folder = Folder::new("forbidden");
     folder.write("a.xyz", "1\n\nC 0 0 0\n").write("a.json", "{}");
     for name in ["a.xyz", "a.json"] {
-        std::fs::set_permissions(folder.path(name), std::fs::Permissions::from_mode(0)).unwrap();
+        std::fs::set_permissions(folder.path(name), std::fs::Permissions::from_mode(0o000)).unwrap();
     }
     if std::fs::read(folder.path("a.xyz")).is_ok() {
         let _ = std::io::Write::write_all(&mut std::io::stderr(), b"1 test skipped: root may read every file\n");

@@ -173,7 +173,6 @@ fn shade_key(shaders: u32, switches: u32, features: u32) -> ShadeKey {
         lights: if on(5) { 8 } else { 0 },
         point_lights: on(6),
         shadows: on(7),
-        soft_taps: 8,
         encode: on(8),
         soft_taps: if on(12) { 16 } else { 0 },
         orthographic: on(11),

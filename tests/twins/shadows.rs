@@ -245,5 +245,6 @@ fn penumbras_are_as_wide_as_the_light_is_large() {
             "penumbra, {name}, {softness_deg} degrees: {drawn:.2} px, in truth {truth:.2}: {:+.1}%",
             100.0 * (drawn / truth - 1.0)
         );
+        assert!((drawn / truth - 1.0).abs() <= PENUMBRA, "{name}, {softness_deg} degrees: {drawn} for {truth}");
     }
 }
