@@ -1,8 +1,6 @@
 // The lights of a style, in view space.
 
-const LIGHT_DIRECTIONAL: u32 = 0u;
 const LIGHT_POINT: u32 = 1u;
-const MAX_LIGHTS: u32 = 8u;
 
 struct Light {
     // Directional: unit vector towards the light. Point: its place.
@@ -24,7 +22,7 @@ struct Light {
 struct Lights {
     // Linear; the sum of the ambient lights.
     ambient: vec3<f32>,
-    count: u32,
+    _pad0: f32,
     items: array<Light, 8>,
 }
 

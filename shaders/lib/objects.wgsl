@@ -55,7 +55,6 @@ fn connector_at(index: u32) -> Connector {
 }
 
 // An id holds what a pixel sees: kind in the upper 3 bits, index in the lower 29; 0 is nothing.
-const KIND_NONE: u32 = 0u;
 const KIND_ATOM: u32 = 1u;
 const KIND_CONNECTOR: u32 = 2u;
 const KIND_ATOM_HULL: u32 = 3u;

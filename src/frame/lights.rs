@@ -35,8 +35,8 @@ gpu_struct! {
     pub struct Lights {
         /// Linear sum of the ambient lights.
         pub ambient: [f32; 3],
-        /// How many of `items` count.
-        pub count: u32,
+        /// Padding.
+        pub _pad0: f32,
         /// The lights.
         pub items: [Light; MAX_LIGHTS],
     }
@@ -47,7 +47,6 @@ impl Lights {
     pub fn new(lighting: &Lighting, layers: &[Option<u32>]) -> Lights {
         let mut lights: Lights = bytemuck::Zeroable::zeroed();
         lights.ambient = lighting.ambient.to_array();
-        lights.count = lighting.lights.len().min(MAX_LIGHTS) as u32;
         for (index, (slot, light)) in lights.items.iter_mut().zip(&lighting.lights).enumerate() {
             (slot.position_view, slot.kind, slot.range) = match light.place {
                 LightPlace::Directional(toward) => (toward.to_array(), 0, 0.0),

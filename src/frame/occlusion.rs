@@ -1,7 +1,7 @@
 //! Which objects to draw, nearest first: on a software adapter without those that nearer atoms hide wholly.
 //!
-//! Half of a protein's atoms lie within it. Finding them on the CPU costs less than a tenth of casting rays at them there;
-//! a hardware adapter gets the whole order. Hiding is exact: a tile of the picture counts as covered only where one
+//! Half of a protein's atoms lie within it. Finding them on the CPU costs less than casting rays at them there; a hardware
+//! adapter gets the whole order. Hiding is exact: a tile of the picture counts as covered only where one
 //! sphere covers all of it, and an object is left out only where all tiles that it touches are covered in front of it,
 //! so the picture stays the same to the last bit (ours).
 

@@ -23,7 +23,7 @@ const MATERIALS: [(f32, f32); 10] = [
     (1.0, 1.0),
 ];
 /// Of display light, 0..1: a fiftieth of a step of 8 bits, where f32 has 1e-7 and the smoothest lobe, whose cosine
-/// changes it most, magnifies that a hundredfold. Largest seen 5.5e-5 (llvmpipe 15).
+/// changes it most, magnifies that a hundredfold. Largest seen 6.2e-5 (llvmpipe 15).
 const TWIN: f32 = 8e-5;
 
 fn surface_of(s: &surface::Surface) -> Surface {
