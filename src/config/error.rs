@@ -200,6 +200,33 @@ pub enum Problem {
     Meaningless(&'static str),
 }
 
+impl Problem {
+    /// The kind of mistake, as tools read it.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Unreadable(_) => "unreadable",
+            Self::NotUtf8 => "not_utf8",
+            Self::Syntax(_) => "syntax",
+            Self::DuplicateKey { .. } => "duplicate_key",
+            Self::UnknownKey { .. } => "unknown_key",
+            Self::MissingKey { .. } => "missing_key",
+            Self::WrongType { .. } => "wrong_type",
+            Self::OutOfRange { .. } => "out_of_range",
+            Self::NotAChoice { .. } => "not_a_choice",
+            Self::UnknownName { .. } => "unknown_name",
+            Self::EffectAsShader { .. } => "effect_as_shader",
+            Self::ShaderAsEffect { .. } => "shader_as_effect",
+            Self::NamelessShader => "nameless_shader",
+            Self::DuplicateName { .. } => "duplicate_name",
+            Self::BadColor { .. } => "bad_color",
+            Self::BadLength { .. } => "bad_length",
+            Self::BadSelector { .. } => "bad_selector",
+            Self::Extends { .. } => "extends",
+            Self::Meaningless(_) => "meaningless",
+        }
+    }
+}
+
 /// One mistake.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{place}: {problem}")]
@@ -299,6 +326,19 @@ pub enum Notice {
         /// The nearest names that the scene has.
         hint: Hint,
     },
+}
+
+impl Notice {
+    /// The kind of warning, as tools read it.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::ShaderNotDrawn { .. } => "shader_not_drawn",
+            Self::EffectNotDrawn { .. } => "effect_not_drawn",
+            Self::PropertyNotDrawn { .. } => "property_not_drawn",
+            Self::TypeNotDrawn { .. } => "type_not_drawn",
+            Self::MatchesNothing { .. } => "matches_nothing",
+        }
+    }
 }
 
 /// One warning.
