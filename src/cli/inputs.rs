@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::{Failure, tell};
-use crate::config::{self, Catalog, Source, Style};
+use crate::config::{self, Catalog, Mistakes, Source, Style};
 use crate::engine;
-use crate::scene::{LoadOptions, ModelChoice, Scene};
+use crate::scene::{LoadOptions, ModelChoice, Scene, SceneError};
 use crate::shipped::{self, Shipped};
 
 /// A picture size written as `WxH`.
@@ -40,30 +40,78 @@ pub(crate) struct Loaded {
     pub(crate) ms: f64,
 }
 
+/// Where a scene or style comes from.
+#[derive(Debug, Clone)]
+pub(crate) enum Input {
+    /// It is part of the program.
+    Shipped(&'static Shipped),
+    /// It is a file, whether it is there or not.
+    File(PathBuf),
+}
+
+impl Input {
+    /// The file, if it is one.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        match self {
+            Input::Shipped(_) => None,
+            Input::File(path) => Some(path),
+        }
+    }
+}
+
+/// Finds what a name on the command line means: a file, or something shipped.
+fn find(what: &str, name: &str, among: &'static [Shipped]) -> Result<Input, Failure> {
+    let path = Path::new(name);
+    match shipped::find(among, name) {
+        Some(shipped) if !is_shadowed(path) => Ok(Input::Shipped(shipped)),
+        None if looks_like_a_name(path) => Err(unknown(what, name, among)),
+        _ => Ok(Input::File(path.to_owned())),
+    }
+}
+
+/// What a scene's name means.
+pub(crate) fn find_scene(name: &str) -> Result<Input, Failure> {
+    find("molecule", name, shipped::MOLECULES)
+}
+
+/// What a style's name means.
+pub(crate) fn find_style(name: &str) -> Result<Input, Failure> {
+    find("look", name, shipped::LOOKS)
+}
+
+/// Reads a scene.
+pub(crate) fn read_scene(input: &Input, options: LoadOptions) -> Result<Scene, SceneError> {
+    match input {
+        Input::Shipped(molecule) => Scene::from_bytes_with(molecule.file, molecule.bytes, &options),
+        Input::File(path) => Scene::load_with(path, &options),
+    }
+}
+
+/// Reads a style with its bases.
+pub(crate) fn read_style(input: &Input) -> Result<Style, Mistakes> {
+    let entries = engine::catalog();
+    let catalog = Catalog { shaders: &entries, kinds: engine::DRAWN_KINDS };
+    match input {
+        Input::Shipped(look) => config::load(&Source::new(look.file, look.bytes), &catalog),
+        Input::File(path) => config::load_file(path, &catalog),
+    }
+}
+
 /// Loads a file, or a shipped molecule by its name.
 pub(crate) fn load_scene(name: &str, options: LoadOptions) -> Result<Loaded, Failure> {
     let start = Instant::now();
-    let path = Path::new(name);
-    let scene = match shipped::find(shipped::MOLECULES, name) {
-        Some(molecule) if !is_shadowed(path) => Scene::from_bytes_with(molecule.file, molecule.bytes, &options),
-        None if looks_like_a_name(path) => return Err(unknown("molecule", name, shipped::MOLECULES)),
-        _ => Scene::load_with(path, &options),
-    };
-    let scene = scene.map_err(Failure::input)?;
+    let scene = read_scene(&find_scene(name)?, options).map_err(Failure::input)?;
     Ok(Loaded { scene, ms: start.elapsed().as_secs_f64() * 1e3 })
 }
 
 /// Loads a style file, or a shipped look by its name.
 pub(crate) fn load_style(name: &str) -> Result<Style, Failure> {
-    let entries = engine::catalog();
-    let catalog = Catalog { shaders: &entries, kinds: engine::DRAWN_KINDS };
-    let path = Path::new(name);
-    let style = match shipped::find(shipped::LOOKS, name) {
-        Some(look) if !is_shadowed(path) => config::load(&Source::new(look.file, look.bytes), &catalog),
-        None if !path.exists() => return Err(unknown("look", name, shipped::LOOKS)),
-        _ => config::load_file(path, &catalog),
-    };
-    style.map_err(Failure::input)
+    let input = find_style(name)?;
+    match input.file() {
+        // Of a file that is not there, the looks that are may be meant.
+        Some(path) if !path.exists() => Err(unknown("look", name, shipped::LOOKS)),
+        _ => read_style(&input).map_err(Failure::input),
+    }
 }
 
 /// Prints what a style says that this version passes over, and what a scene's file had mended.

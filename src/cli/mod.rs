@@ -4,6 +4,7 @@ mod copy;
 mod gallery;
 mod inputs;
 mod render;
+mod watch;
 
 use std::fmt::Display;
 use std::io::{self, Write};

@@ -45,6 +45,41 @@ pub(super) struct Args {
     /// Print one line of JSON: adapter, times, counts, bytes
     #[arg(long)]
     json: bool,
+    /// Draw again after each save of the style, its bases or the scene, until interrupted
+    #[arg(long, conflicts_with = "frames")]
+    watch: bool,
+}
+
+impl Args {
+    /// The scene's file or name.
+    pub(super) fn scene(&self) -> &str {
+        &self.scene
+    }
+
+    /// The style's file or name.
+    pub(super) fn style(&self) -> &str {
+        &self.style
+    }
+
+    /// Whether each picture is told as JSON.
+    pub(super) fn json(&self) -> bool {
+        self.json
+    }
+
+    /// How the scene is read.
+    pub(super) fn load_options(&self) -> LoadOptions {
+        LoadOptions { model: self.model.unwrap_or(ModelChoice::First) }
+    }
+
+    /// The files to write.
+    pub(super) fn outputs(&self) -> impl Iterator<Item = &Path> {
+        self.output.iter().chain(self.aov.iter().map(|(_, file)| file)).map(PathBuf::as_path)
+    }
+
+    fn request(&self) -> Request {
+        let wide = self.bits == "16";
+        Request { size: self.size.0, samples: self.samples, transparent: self.transparent, wide }
+    }
 }
 
 fn parse_aov(text: &str) -> Result<(AovName, PathBuf), String> {
@@ -64,14 +99,12 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     if args.output.is_none() && args.aov.is_empty() && !args.json {
         return Err(Failure::usage("nothing to write: give -o OUT.png, --aov NAME=FILE.exr or --json"));
     }
-    let outputs = args.output.iter().chain(args.aov.iter().map(|(_, file)| file));
-    let outputs: Vec<&Path> = outputs.map(PathBuf::as_path).collect();
-    outputs.iter().try_for_each(|output| check_writable(output))?;
-    inputs::check_outputs(
-        outputs.iter().copied(),
-        &[("scene", Path::new(&args.scene)), ("style", Path::new(&args.style))],
-    )?;
-    let options = LoadOptions { model: args.model.unwrap_or(ModelChoice::First) };
+    args.outputs().try_for_each(check_writable)?;
+    inputs::check_outputs(args.outputs(), &[("scene", Path::new(&args.scene)), ("style", Path::new(&args.style))])?;
+    if args.watch {
+        return super::watch::run(args);
+    }
+    let options = args.load_options();
 
     // The device opens while the files are read.
     let (gpu, loaded, style) = std::thread::scope(|scope| {
@@ -85,84 +118,114 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     });
     let (style, loaded) = (style?, loaded?);
     let bases: Vec<_> = style.files.iter().map(|file| ("style's base", file.as_path())).collect();
-    inputs::check_outputs(outputs.into_iter(), &bases)?;
+    inputs::check_outputs(args.outputs(), &bases)?;
     let (gpu, device_ms) = gpu.map_err(|_| Failure::from(GpuError::NoAdapter))?;
     let gpu = Arc::new(gpu?);
     inputs::print_warnings(&style, &loaded.scene, &args.scene);
-    let load_ms = loaded.ms;
-
-    let request =
-        Request { size: args.size.0, samples: args.samples, transparent: args.transparent, wide: args.bits == "16" };
     let mut engine = Engine::new(gpu, loaded.scene, style);
     for limit in engine.limits_exceeded() {
         tell(format!("{}: warning: {limit}", args.style));
     }
+    let picture = draw(&mut engine, args)?;
+    let total_ms = ms_since(start);
+
+    let mut frame_ms = Vec::new();
+    for _ in 0..args.frames {
+        frame_ms.push(rounded(engine.draw(&args.request(), false, &mut |_| ())?));
+    }
+    write_aovs(&mut engine, args)?;
+    if args.json {
+        let mut line = describe(&mut engine, args, &picture)?;
+        line.insert("device_ms".to_owned(), rounded(device_ms).into());
+        line.insert("load_ms".to_owned(), rounded(loaded.ms).into());
+        line.insert("total_ms".to_owned(), rounded(total_ms).into());
+        line.insert("frame_ms".to_owned(), frame_ms.into());
+        answer(serde_json::Value::Object(line))?;
+    }
+    Ok(())
+}
+
+/// Times of one picture in milliseconds.
+pub(super) struct Drawn {
+    /// The frame itself.
+    pub(super) frame_ms: f64,
+    readback_ms: f64,
+    encode_ms: f64,
+}
+
+/// Draws one picture and writes it.
+pub(super) fn draw(engine: &mut Engine, args: &Args) -> Result<Drawn, Failure> {
     let first = Instant::now();
     let bar = progress_bar(u64::from(args.samples), args.json);
-    engine.draw(&request, false, &mut |done| bar.set_position(u64::from(done)))?;
+    engine.draw(&args.request(), false, &mut |done| bar.set_position(u64::from(done)))?;
     bar.finish_and_clear();
-    let first_frame_ms = first.elapsed().as_secs_f64() * 1e3;
+    let frame_ms = ms_since(first);
 
     let read = Instant::now();
-    let image = engine.read(&request)?;
-    let readback_ms = read.elapsed().as_secs_f64() * 1e3;
+    let image = engine.read(&args.request())?;
+    let readback_ms = ms_since(read);
     let encode = Instant::now();
     if let Some(output) = &args.output {
         image.write_png(output).map_err(|error| Failure::input(cannot_write(output, &error)))?;
     }
-    let encode_ms = encode.elapsed().as_secs_f64() * 1e3;
-    let total_ms = start.elapsed().as_secs_f64() * 1e3;
+    Ok(Drawn { frame_ms, readback_ms, encode_ms: ms_since(encode) })
+}
 
-    let mut frame_ms = Vec::new();
-    for _ in 0..args.frames {
-        frame_ms.push(rounded(engine.draw(&request, false, &mut |_| ())?));
+/// Writes the AOVs that are asked for.
+pub(super) fn write_aovs(engine: &mut Engine, args: &Args) -> Result<(), Failure> {
+    if args.aov.is_empty() {
+        return Ok(());
     }
-    let passes = if args.json {
-        engine.draw(&request, true, &mut |_| ())?;
-        engine.pass_times().iter().map(|(name, ms)| ((*name).to_owned(), rounded(*ms).into())).collect()
-    } else {
-        serde_json::Map::new()
-    };
-    if !args.aov.is_empty() {
-        let aovs = engine.aovs(&request)?;
-        for (name, file) in &args.aov {
-            aovs.write_exr(*name, file).map_err(|error| Failure::input(cannot_write(file, &error)))?;
-        }
-    }
-    if args.json {
-        let info = &engine.gpu().info;
-        let counts = engine.counts();
-        let molecule = &engine.scene().molecule;
-        let targets: serde_json::Map<String, serde_json::Value> =
-            engine.target_bytes().into_iter().map(|(name, bytes)| (name.to_owned(), bytes.into())).collect();
-        let line = serde_json::json!({
-            "scene": args.scene,
-            "style": args.style,
-            "size": args.size.0,
-            "samples": args.samples,
-            "adapter": info.name,
-            "driver": format!("{} {}", info.driver, info.driver_info),
-            "renderer": "gpu",
-            "device_ms": rounded(device_ms),
-            "load_ms": rounded(load_ms),
-            "first_frame_ms": rounded(first_frame_ms),
-            "readback_ms": rounded(readback_ms),
-            "encode_ms": rounded(encode_ms),
-            "total_ms": rounded(total_ms),
-            "frame_ms": frame_ms,
-            "pass_ms": passes,
-            "pipelines_built": engine.pipelines_built(),
-            "peak_rss_mb": peak_rss_mb(),
-            "atoms": molecule.atoms.len(),
-            "bonds": molecule.bonds.len(),
-            "spheres": counts.spheres,
-            "cylinders": counts.cylinders,
-            "triangles": counts.triangles,
-            "target_bytes": targets,
-        });
-        answer(line)?;
+    let aovs = engine.aovs(&args.request())?;
+    for (name, file) in &args.aov {
+        aovs.write_exr(*name, file).map_err(|error| Failure::input(cannot_write(file, &error)))?;
     }
     Ok(())
+}
+
+/// What `--json` says of a picture. Draws one frame more, to time its passes.
+pub(super) fn describe(
+    engine: &mut Engine,
+    args: &Args,
+    picture: &Drawn,
+) -> Result<serde_json::Map<String, serde_json::Value>, Failure> {
+    engine.draw(&args.request(), true, &mut |_| ())?;
+    let passes: serde_json::Map<String, serde_json::Value> =
+        engine.pass_times().iter().map(|(name, ms)| ((*name).to_owned(), rounded(*ms).into())).collect();
+    let targets: serde_json::Map<String, serde_json::Value> =
+        engine.target_bytes().into_iter().map(|(name, bytes)| (name.to_owned(), bytes.into())).collect();
+    let (info, counts) = (&engine.gpu().info, engine.counts());
+    let (atoms, bonds) =
+        engine.scene().map_or((0, 0), |scene| (scene.molecule.atoms.len(), scene.molecule.bonds.len()));
+    let line = serde_json::json!({
+        "scene": args.scene,
+        "style": args.style,
+        "size": args.size.0,
+        "samples": args.samples,
+        "adapter": info.name,
+        "driver": format!("{} {}", info.driver, info.driver_info),
+        "renderer": "gpu",
+        "first_frame_ms": rounded(picture.frame_ms),
+        "readback_ms": rounded(picture.readback_ms),
+        "encode_ms": rounded(picture.encode_ms),
+        "pass_ms": passes,
+        "pipelines_built": engine.counters().pipelines_built,
+        "peak_rss_mb": peak_rss_mb(),
+        "atoms": atoms,
+        "bonds": bonds,
+        "spheres": counts.spheres,
+        "cylinders": counts.cylinders,
+        "triangles": counts.triangles,
+        "target_bytes": targets,
+    });
+    match line {
+        serde_json::Value::Object(line) => Ok(line),
+        _ => Ok(serde_json::Map::new()),
+    }
+}
+
+fn ms_since(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
 }
 
 /// A bar on a terminal; silent elsewhere, for short work and beside JSON.
@@ -174,7 +237,7 @@ pub(super) fn progress_bar(steps: u64, quiet: bool) -> indicatif::ProgressBar {
     indicatif::ProgressBar::new(steps)
 }
 
-fn rounded(ms: f64) -> f64 {
+pub(super) fn rounded(ms: f64) -> f64 {
     (ms * 100.0).round() / 100.0
 }
 

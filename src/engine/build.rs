@@ -5,19 +5,41 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 
 use super::palette::AtomColors;
-use crate::config::{AtomRadius, Attribute, BaseColor, ObjectKind, Style, Value};
+use crate::config::{AtomRadius, Attribute, BaseColor, Geometry, ObjectKind, Selector, Style, Value};
 use crate::frame::Materials;
 use crate::frame::objects::{self, Connector, DrawList, Material, pack_linear};
 use crate::providers::{Lengths, ObjectAttributes, ShaderProvider};
 use crate::scene::{Atom, Bond, Molecule};
 use crate::shading::{self, MaterialContext, SHADERS};
 
-/// What a style makes of a scene, and the lengths that go with it.
-pub struct Built {
-    /// Objects.
+/// Whatever of a style decides which objects are drawn, how large, and in which colours of their own. Styles that are
+/// equal in it draw the same objects, and differ in materials at the most.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObjectKey {
+    rules: Vec<(Selector, Option<usize>)>,
+    basic: usize,
+    geometry: Geometry,
+    schemes: Vec<BaseColor>,
+}
+
+impl ObjectKey {
+    /// The key of a style.
+    pub fn new(style: &Style) -> ObjectKey {
+        ObjectKey {
+            rules: style.mapping.iter().map(|rule| (rule.selector.clone(), rule.target)).collect(),
+            basic: style.basic,
+            geometry: style.geometry.clone(),
+            schemes: style.shaders.iter().map(own_scheme).collect(),
+        }
+    }
+}
+
+/// The objects that a style draws of a scene, and what belongs to them.
+pub struct Objects {
+    /// The objects.
     pub list: DrawList,
-    /// Their materials.
-    pub materials: Materials,
+    /// The shader of the style that each material is, in the order of the materials' numbers.
+    pub materials: Vec<usize>,
     /// Lengths, with the median radius of the drawn atoms.
     pub lengths: Lengths,
 }
@@ -41,8 +63,8 @@ impl ObjectAttributes for AtomView<'_> {
     }
 }
 
-/// Resolves the style for every object of the molecule. `height_px` is the picture's, for lengths in points.
-pub fn build(molecule: &Molecule, style: &Style, exposure_factor: f32, height_px: u32) -> Built {
+/// Resolves the style for every object of the molecule.
+pub fn objects(molecule: &Molecule, style: &Style) -> Objects {
     let provider = ShaderProvider::new(style);
     let models: BTreeMap<u32, String> =
         molecule.residues.iter().map(|residue| (residue.model, residue.model.to_string())).collect();
@@ -74,8 +96,8 @@ pub fn build(molecule: &Molecule, style: &Style, exposure_factor: f32, height_px
         (!drawn_radii.is_empty()).then(|| f64::from(*drawn_radii.select_nth_unstable_by(middle, f32::total_cmp).1));
     let lengths = Lengths::new(bounds, median);
 
-    let mut materials = MaterialTable::new(style, exposure_factor, lengths, height_px);
-    let by_residue = style.shaders.iter().any(|shader| scheme(shader) == BaseColor::Residue);
+    let mut materials = MaterialNumbers::default();
+    let by_residue = style.shaders.iter().any(|shader| own_scheme(shader) == BaseColor::Residue);
     let colors = AtomColors::new(molecule, by_residue);
 
     let mut list = DrawList::default();
@@ -85,8 +107,8 @@ pub fn build(molecule: &Molecule, style: &Style, exposure_factor: f32, height_px
             list.atoms.push(objects::Atom {
                 position_world: atom.position.to_array(),
                 radius,
-                color: pack_linear(colors.of(molecule, atom, scheme(&style.shaders[used]))),
-                material: materials.material(used),
+                color: pack_linear(colors.of(molecule, atom, own_scheme(&style.shaders[used]))),
+                material: materials.of(used),
                 _pad0: 0,
             });
         }
@@ -114,8 +136,8 @@ pub fn build(molecule: &Molecule, style: &Style, exposure_factor: f32, height_px
         if order == 1 && buried(radius(a), radius(b), length, bond_radius) {
             continue;
         }
-        let scheme = scheme(&style.shaders[used]);
-        let material = materials.material(used);
+        let scheme = own_scheme(&style.shaders[used]);
+        let material = materials.of(used);
         for (offset, radius) in strands(molecule, bond, order, bond_radius) {
             list.connectors.push(Connector {
                 a_world: (a.position + offset).to_array(),
@@ -127,7 +149,7 @@ pub fn build(molecule: &Molecule, style: &Style, exposure_factor: f32, height_px
             });
         }
     }
-    Built { list, materials: materials.materials, lengths }
+    Objects { list, materials: materials.used, lengths }
 }
 
 fn connector_use<'a>(
@@ -144,6 +166,15 @@ fn scheme(shader: &crate::config::ShaderUse) -> BaseColor {
     match shader.values.get(shading::BASE_COLOR.name) {
         Some(Value::BaseColor(color)) => *color,
         _ => BaseColor::Element,
+    }
+}
+
+/// Where the colours of the objects themselves come from. One colour for all lies in the material, which then covers
+/// them.
+fn own_scheme(shader: &crate::config::ShaderUse) -> BaseColor {
+    match scheme(shader) {
+        BaseColor::Color(_) => BaseColor::Element,
+        other => other,
     }
 }
 
@@ -187,33 +218,33 @@ fn strands(molecule: &Molecule, bond: &Bond, order: u8, radius: f32) -> Vec<(Vec
     }
 }
 
-/// Collects the materials that objects use, in order of first use.
-struct MaterialTable<'a> {
-    style: &'a Style,
-    context: MaterialContext,
-    lengths: Lengths,
-    height_px: u32,
-    index_of: BTreeMap<usize, u32>,
-    materials: Materials,
+/// Numbers the materials that objects use, in order of first use.
+#[derive(Default)]
+struct MaterialNumbers {
+    number_of: BTreeMap<usize, u32>,
+    used: Vec<usize>,
 }
 
-impl<'a> MaterialTable<'a> {
-    fn new(style: &'a Style, exposure_factor: f32, lengths: Lengths, height_px: u32) -> MaterialTable<'a> {
-        let context = MaterialContext { exposure_factor };
-        MaterialTable { style, context, lengths, height_px, index_of: BTreeMap::new(), materials: Materials::default() }
+impl MaterialNumbers {
+    fn of(&mut self, shader: usize) -> u32 {
+        *self.number_of.entry(shader).or_insert_with(|| {
+            self.used.push(shader);
+            self.used.len() as u32 - 1
+        })
     }
+}
 
-    fn material(&mut self, used: usize) -> u32 {
-        if let Some(&index) = self.index_of.get(&used) {
-            return index;
-        }
-        let shader_use = &self.style.shaders[used];
+/// The materials of the shaders `used`, by number. `height_px` is the picture's, for lengths in points.
+pub fn materials(style: &Style, used: &[usize], exposure_factor: f32, lengths: &Lengths, height_px: u32) -> Materials {
+    let context = MaterialContext { exposure_factor };
+    let mut materials = Materials::default();
+    for shader_use in used.iter().map(|&used| &style.shaders[used]) {
         // The loader accepts only names of the registry.
         let shader_index = shading::shader_index(shader_use.shader).unwrap_or(0);
         let shader = SHADERS[shader_index];
-        let bytes = shader.material(&shader_use.values, &self.context);
-        let params = self.materials.params.entry(shader_index).or_default();
-        *self.materials.features.entry(shader_index).or_default() |= shader.features_used(&shader_use.values);
+        let bytes = shader.material(&shader_use.values, &context);
+        let params = materials.params.entry(shader_index).or_default();
+        *materials.features.entry(shader_index).or_default() |= shader.features_used(&shader_use.values);
         let params_index = params.len() / bytes.len().max(1);
         params.extend_from_slice(&bytes);
         let base_color = match scheme(shader_use) {
@@ -221,9 +252,8 @@ impl<'a> MaterialTable<'a> {
             _ => [0.0; 4],
         };
         let hull = shader.hull(&shader_use.values);
-        let (hull_px, hull_world) = hull.map_or((0.0, 0.0), |hull| self.lengths.screen(hull.width, self.height_px));
-        let index = self.materials.common.len() as u32;
-        self.materials.common.push(Material {
+        let (hull_px, hull_world) = hull.map_or((0.0, 0.0), |hull| lengths.screen(hull.width, height_px));
+        materials.common.push(Material {
             base_color,
             hull_color: hull.map_or([0.0; 4], |hull| hull.color.extend(1.0).to_array()),
             hull_px: hull_px as f32,
@@ -231,9 +261,8 @@ impl<'a> MaterialTable<'a> {
             shader: shader_index as u32,
             index: params_index as u32,
         });
-        self.index_of.insert(used, index);
-        index
     }
+    materials
 }
 
 #[cfg(test)]

@@ -1,7 +1,10 @@
 //! The engine: the three providers, the scene and the renderer. Window, headless command and tests all use it.
 
 mod build;
+mod live;
 mod palette;
+mod pending;
+mod watch;
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -9,15 +12,18 @@ use std::time::Instant;
 use glam::DVec3;
 
 use crate::config::{CatalogEntry, LightKind, ObjectKind, Role, Shadow, Style};
-use crate::frame::{self, Aovs, FrameInput, Renderer, TargetBytes};
+use crate::frame::objects::DrawList;
+use crate::frame::{self, Aovs, FrameInput, Materials, Renderer, TargetBytes};
 use crate::gpu::PassTimes;
-use crate::providers::{CameraProvider, LightingProvider};
+use crate::providers::{CameraProvider, Lengths, LightingProvider};
 use crate::scene::{AovImage, Image, Pixels, Scene};
 use crate::shading::SHADERS;
+use build::ObjectKey;
+use live::Live;
 
 pub use crate::frame::MAX_SAMPLES;
-pub use crate::gpu::{Gpu, GpuError};
-pub use build::Built;
+pub use crate::gpu::{Counters, Gpu, GpuError};
+pub use live::{Part, Refusal, Reload, ReloadTimes, Sources};
 
 /// Effects and shaders of the contract that this version names but does not draw.
 const NOT_DRAWN: [(&str, Role); 4] = [
@@ -66,23 +72,69 @@ pub struct Counts {
     pub triangles: u32,
 }
 
-/// One scene in one style on one device.
+/// What is drawn: a scene in a style, with the providers that answer for them.
+struct Content {
+    scene: Arc<Scene>,
+    style: Arc<Style>,
+    camera: CameraProvider,
+}
+
+impl Content {
+    fn new(scene: Arc<Scene>, style: Arc<Style>) -> Content {
+        let molecule = &scene.molecule;
+        let positions = molecule.atoms.iter().map(|atom| atom.position);
+        let camera = CameraProvider::new(style.camera.clone(), molecule.bounding_sphere(), positions);
+        Content { scene, style, camera }
+    }
+}
+
+/// What a scene and a style come to, found on the CPU and not in force yet.
+struct Resolved {
+    /// The objects; none where those that are drawn already are the same.
+    list: Option<DrawList>,
+    materials: Materials,
+    drawn: Drawn,
+}
+
+/// What the renderer holds, as far as it decides what a change costs.
+#[derive(Clone)]
+struct Drawn {
+    key: ObjectKey,
+    /// The style's shader of each material.
+    used: Vec<usize>,
+    lengths: Lengths,
+    lighting: LightingProvider,
+    height_px: u32,
+}
+
+/// One scene in one style on one device. It draws what it is given, or what files hold and follows their changes.
 pub struct Engine {
-    scene: Scene,
-    style: Style,
     gpu: Arc<Gpu>,
     renderer: Renderer,
-    built_for: Option<u32>,
-    lighting: Option<LightingProvider>,
-    camera: CameraProvider,
+    content: Option<Content>,
+    /// What of the content the renderer holds.
+    drawn: Option<Drawn>,
+    /// Whether scene or style were replaced since.
+    stale: bool,
+    /// What was drawn last: new content is made ready for the same again.
+    last_request: Option<Request>,
+    live: Option<Live>,
 }
 
 impl Engine {
     /// An engine for a scene and a style. Nothing is built before the first frame.
     pub fn new(gpu: Arc<Gpu>, scene: Scene, style: Style) -> Engine {
-        let camera = camera_provider(&scene, &style);
+        Engine { content: Some(Content::new(Arc::new(scene), Arc::new(style))), ..Engine::empty(gpu) }
+    }
+
+    /// An engine for what files hold. Nothing is loaded before the first [`Engine::poll`].
+    pub fn live(gpu: Arc<Gpu>, sources: Sources) -> Engine {
+        Engine { live: Some(Live::new(sources)), ..Engine::empty(gpu) }
+    }
+
+    fn empty(gpu: Arc<Gpu>) -> Engine {
         let renderer = Renderer::new(Arc::clone(&gpu));
-        Engine { scene, style, gpu, renderer, built_for: None, lighting: None, camera }
+        Engine { gpu, renderer, content: None, drawn: None, stale: false, last_request: None, live: None }
     }
 
     /// The device.
@@ -90,43 +142,72 @@ impl Engine {
         &self.gpu
     }
 
-    /// The scene.
-    pub fn scene(&self) -> &Scene {
-        &self.scene
+    /// The scene, once there is one.
+    pub fn scene(&self) -> Option<&Scene> {
+        self.content.as_ref().map(|content| &*content.scene)
     }
 
-    /// Replaces the style; pipelines stay where the new one needs the same.
+    /// The style, once there is one.
+    pub fn style(&self) -> Option<&Style> {
+        self.content.as_ref().map(|content| &*content.style)
+    }
+
+    /// Replaces the style; the next frame writes what differs.
     pub fn set_style(&mut self, style: Style) {
-        self.camera = camera_provider(&self.scene, &style);
-        self.style = style;
-        self.built_for = None;
+        if let Some(content) = self.content.take() {
+            self.content = Some(Content::new(content.scene, Arc::new(style)));
+            self.stale = true;
+        }
     }
 
     /// Replaces the scene.
     pub fn set_scene(&mut self, scene: Scene) {
-        self.camera = camera_provider(&scene, &self.style);
-        self.scene = scene;
-        self.built_for = None;
-    }
-
-    /// The camera for a picture of this size.
-    pub fn camera(&self, size: [u32; 2]) -> crate::scene::Camera {
-        self.camera.camera(size)
-    }
-
-    /// Resolves scene and style, unless that was done for this picture height.
-    fn prepare(&mut self, request: &Request) -> Result<LightingProvider, GpuError> {
-        let height = request.size[1];
-        if let (Some(lighting), true) = (&self.lighting, self.built_for == Some(height)) {
-            return Ok(lighting.clone());
+        if let Some(content) = self.content.take() {
+            self.content = Some(Content::new(Arc::new(scene), content.style));
+            self.drawn = None;
         }
-        let molecule = &self.scene.molecule;
-        let built = build::build(molecule, &self.style, self.camera.exposure_factor(), height);
-        self.renderer.set_contents(&built.list, &built.materials)?;
-        let lighting = LightingProvider::new(self.style.lights.clone(), molecule.bounding_sphere(), built.lengths);
-        self.lighting = Some(lighting.clone());
-        self.built_for = Some(height);
-        Ok(lighting)
+    }
+
+    /// The camera for a picture of this size, once there is something to see.
+    pub fn camera(&self, size: [u32; 2]) -> Option<crate::scene::Camera> {
+        self.content.as_ref().map(|content| content.camera.camera(size))
+    }
+
+    /// Makes the renderer hold what the content comes to, unless it does.
+    fn refresh(&mut self, height_px: u32) -> Result<(), GpuError> {
+        let content = self.content.as_ref().ok_or(GpuError::NothingToDraw)?;
+        if !self.stale && self.drawn.as_ref().is_some_and(|drawn| drawn.height_px == height_px) {
+            return Ok(());
+        }
+        let resolved = resolve(content, self.drawn.as_ref(), height_px);
+        self.take(resolved)
+    }
+
+    /// Puts what was resolved into force. On an error the former stays.
+    fn take(&mut self, resolved: Resolved) -> Result<(), GpuError> {
+        self.renderer.set_contents(resolved.list.as_ref(), resolved.materials)?;
+        self.drawn = Some(resolved.drawn);
+        self.stale = false;
+        Ok(())
+    }
+
+    /// Puts other content into force, all or nothing: it is resolved and its pipelines are built first, for a picture
+    /// like the last one. Returns when resolving was done.
+    fn replace(&mut self, content: Content, scene_is_new: bool) -> Result<Instant, GpuError> {
+        let Some(request) = self.last_request else {
+            self.content = Some(content);
+            (self.drawn, self.stale) = (None, true);
+            return Ok(Instant::now());
+        };
+        let known = self.drawn.as_ref().filter(|_| !scene_is_new);
+        let resolved = resolve(&content, known, request.size[1]);
+        let resolved_at = Instant::now();
+        frame_input(&content, &resolved.drawn.lighting, &request, |input| {
+            self.renderer.prepare(resolved.list.as_ref(), &resolved.materials, input)
+        })?;
+        self.take(resolved)?;
+        self.content = Some(content);
+        Ok(resolved_at)
     }
 
     /// Draws one frame and waits for it; returns its milliseconds (encode, submit, idle).
@@ -146,6 +227,7 @@ impl Engine {
     /// # Errors
     /// [`GpuError::Driver`] where it cannot be read back.
     pub fn read(&self, request: &Request) -> Result<Image, GpuError> {
+        let content = self.content.as_ref().ok_or(GpuError::NothingToDraw)?;
         let bytes = self.renderer.read(request.wide)?;
         let pixels = if request.wide {
             Pixels::U16(bytes.chunks_exact(2).map(bytemuck::pod_read_unaligned).collect())
@@ -155,7 +237,7 @@ impl Engine {
         Ok(Image {
             size: request.size,
             pixels,
-            opaque: !request.transparent && self.camera.background(false)[3] >= 1.0,
+            opaque: !request.transparent && content.camera.background(false)[3] >= 1.0,
         })
     }
 
@@ -189,19 +271,10 @@ impl Engine {
         request: &Request,
         draw: impl FnOnce(&mut Renderer, &FrameInput<'_>) -> Result<T, GpuError>,
     ) -> Result<T, GpuError> {
-        let lighting_provider = self.prepare(request)?;
-        let camera = self.camera.camera(request.size);
-        let lighting = lighting_provider.lighting(&camera);
-        let input = FrameInput {
-            camera: &camera,
-            lighting: &lighting,
-            bounds: self.scene.molecule.bounding_sphere(),
-            background: self.camera.background(request.transparent),
-            size: request.size,
-            samples: request.samples,
-            wide: request.wide,
-        };
-        draw(&mut self.renderer, &input)
+        self.refresh(request.size[1])?;
+        self.last_request = Some(*request);
+        let (Some(content), Some(drawn)) = (&self.content, &self.drawn) else { return Err(GpuError::NothingToDraw) };
+        frame_input(content, &drawn.lighting, request, |input| draw(&mut self.renderer, input))
     }
 
     /// Milliseconds of each pass of the last timed frame.
@@ -215,9 +288,9 @@ impl Engine {
         Counts { spheres, cylinders, triangles: 2 * (spheres + cylinders) }
     }
 
-    /// Pipelines built so far.
-    pub fn pipelines_built(&self) -> u32 {
-        self.renderer.pipelines_built()
+    /// What was asked of the device so far.
+    pub fn counters(&self) -> Counters {
+        self.gpu.counters()
     }
 
     /// Bytes of each target of the last frame.
@@ -227,7 +300,8 @@ impl Engine {
 
     /// What the style asks of lights that a frame does not do, in plain words.
     pub fn limits_exceeded(&self) -> Vec<String> {
-        let lights: Vec<_> = self.style.lights.iter().filter(|light| light.kind != LightKind::Ambient).collect();
+        let Some(style) = self.style() else { return Vec::new() };
+        let lights: Vec<_> = style.lights.iter().filter(|light| light.kind != LightKind::Ambient).collect();
         let mut exceeded = Vec::new();
         if lights.len() > frame::MAX_LIGHTS {
             exceeded.push(format!("the style has {} lights; only the first {} shine", lights.len(), frame::MAX_LIGHTS));
@@ -255,8 +329,40 @@ impl Engine {
     }
 }
 
-fn camera_provider(scene: &Scene, style: &Style) -> CameraProvider {
+/// Finds what a scene and a style come to; `drawn` is what the renderer holds of the same scene, of which what stays the
+/// same is taken over.
+fn resolve(content: &Content, drawn: Option<&Drawn>, height_px: u32) -> Resolved {
+    let Content { scene, style, camera } = content;
     let molecule = &scene.molecule;
-    let positions = molecule.atoms.iter().map(|atom| atom.position);
-    CameraProvider::new(style.camera.clone(), molecule.bounding_sphere(), positions)
+    let key = ObjectKey::new(style);
+    let (list, used, lengths) = match drawn.filter(|drawn| drawn.key == key) {
+        Some(drawn) => (None, drawn.used.clone(), drawn.lengths),
+        None => {
+            let objects = build::objects(molecule, style);
+            (Some(objects.list), objects.materials, objects.lengths)
+        }
+    };
+    let materials = build::materials(style, &used, camera.exposure_factor(), &lengths, height_px);
+    let lighting = LightingProvider::new(style.lights.clone(), molecule.bounding_sphere(), lengths);
+    Resolved { list, materials, drawn: Drawn { key, used, lengths, lighting, height_px } }
+}
+
+/// Calls `draw` with what a frame of the content needs beside objects and materials.
+fn frame_input<T>(
+    content: &Content,
+    lighting: &LightingProvider,
+    request: &Request,
+    draw: impl FnOnce(&FrameInput<'_>) -> T,
+) -> T {
+    let camera = content.camera.camera(request.size);
+    let lighting = lighting.lighting(&camera);
+    draw(&FrameInput {
+        camera: &camera,
+        lighting: &lighting,
+        bounds: content.scene.molecule.bounding_sphere(),
+        background: content.camera.background(request.transparent),
+        size: request.size,
+        samples: request.samples,
+        wide: request.wide,
+    })
 }

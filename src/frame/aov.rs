@@ -47,11 +47,8 @@ impl Aov {
                 entry.insert((layout, pipeline))
             }
         };
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("aov"),
-            layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(from.ids) }],
-        });
+        let ids = wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(from.ids) };
+        let group = gpu.bind_group("aov", layout, &[ids]);
         let groups: &[(&wgpu::BindGroup, &[u32])] = &[(&scene.group, &[SceneBindings::offset(0)]), (&group, &[])];
         fullscreen::draw(encoder, "aov", pipeline, groups, target, None);
         Ok(())

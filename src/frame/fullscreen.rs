@@ -36,7 +36,7 @@ pub fn pipeline(
         bind_group_layouts: &layouts,
         immediate_size: 0,
     });
-    Ok(gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+    gpu.render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(label),
         layout: Some(&layout),
         vertex: wgpu::VertexState {
@@ -56,7 +56,7 @@ pub fn pipeline(
         }),
         multiview_mask: None,
         cache: None,
-    }))
+    })
 }
 
 /// Draws it: `groups` in order, each with its dynamic offsets.

@@ -3,6 +3,7 @@
 //! A pass that nothing needs does not exist in that frame, and its pipeline and targets are never made.
 
 mod aov;
+mod contents;
 mod fullscreen;
 mod lights;
 pub mod objects;
@@ -14,12 +15,13 @@ mod targets;
 mod view;
 mod visibility;
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 pub use aov::aov_module;
+pub use contents::Materials;
+use contents::{Contents, Needs};
 pub use lights::{Light, Lights, MAX_LIGHTS};
-use objects::{DrawList, Material, ObjectBuffers};
+use objects::{DrawList, Material};
 use occlusion::Reach;
 pub use resolve::resolve_module;
 pub use shade::{Output, ShadeKey, ShaderNeeds, shade_module};
@@ -32,11 +34,11 @@ pub use view::View;
 use view::sample_offsets_px;
 pub use visibility::VisibilityKey;
 pub use visibility::visibility_module;
-use visibility::{DEPTH_FORMAT, ID_FORMAT, Visibility, VisibilityPass};
+use visibility::{DEPTH_FORMAT, Eye, ID_FORMAT, Visibility, VisibilityPass};
 
 use crate::gpu::{Gpu, GpuError, GpuStruct, PassTimer, PassTimes, StructInfo, read_texture};
 use crate::scene::{Camera, LightPlace, Lighting, Sphere};
-use crate::shading::{MAX_MATERIALS, SHADERS};
+use crate::shading::SHADERS;
 
 /// Pictures of 8 bits a channel, sRGB values written by the shader.
 const OUTPUT_8: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -52,32 +54,6 @@ const SAMPLES_PER_SUBMISSION: usize = 8;
 /// Where samples add up: 32-bit floats, or 16-bit ones where the adapter cannot blend those.
 fn light_format(gpu: &Gpu) -> wgpu::TextureFormat {
     if gpu.adds_float32() { wgpu::TextureFormat::Rgba32Float } else { wgpu::TextureFormat::Rgba16Float }
-}
-
-/// Materials of a style: what all share, and each shader's parameter sets.
-#[derive(Debug, Clone, Default)]
-pub struct Materials {
-    /// One for each material.
-    pub common: Vec<Material>,
-    /// Bytes of the parameter sets, by the shader's place in the registry.
-    pub params: BTreeMap<usize, Vec<u8>>,
-    /// Features that the materials of each shader use, one bit each.
-    pub features: BTreeMap<usize, u32>,
-}
-
-impl Materials {
-    fn has_hulls(&self) -> bool {
-        let Reach { px, world } = self.reach();
-        px + world > 0.0
-    }
-
-    /// The widest hull outline.
-    fn reach(&self) -> Reach {
-        self.common.iter().fold(Reach::default(), |reach, material| Reach {
-            px: reach.px.max(material.hull_px),
-            world: reach.world.max(material.hull_world),
-        })
-    }
 }
 
 /// What one still needs beside objects and materials.
@@ -109,17 +85,47 @@ pub struct Aovs {
     pub color: Vec<f32>,
 }
 
-struct Contents {
-    objects: ObjectBuffers,
-    materials: wgpu::Buffer,
-    params: Vec<wgpu::Buffer>,
-    /// The needs of the objects; those of lights and output are filled in for each frame.
-    needs: ShadeKey,
-    /// What outlines add to the objects.
-    reach: Reach,
+/// The passes of one frame and what they need, found before anything is made.
+struct Plan {
+    /// Samples a pixel.
+    samples: u32,
+    /// Straight to picture values, without a target in which samples add up.
+    direct: bool,
+    shadows: ShadowPlan,
+    map_size: u32,
+    shade: ShadeKey,
+    seen: VisibilityKey,
 }
 
-/// Draws frames of one scene in one style.
+impl Plan {
+    fn new(gpu: &Gpu, needs: &Needs, input: &FrameInput<'_>) -> Plan {
+        let samples = input.samples.clamp(1, MAX_SAMPLES);
+        let direct = samples == 1 && !input.wide;
+        let map_size = shadow::map_size(gpu, input.size[1]);
+        let shadows = ShadowPlan::new(input.lighting, input.camera, input.bounds, map_size);
+        let shadowed = !shadows.views.is_empty();
+        let orthographic = input.camera.orthographic;
+        let shade = ShadeKey {
+            lights: input.lighting.lights.len().min(MAX_LIGHTS) as u32,
+            point_lights: input.lighting.lights.iter().any(|light| matches!(light.place, LightPlace::Point { .. })),
+            shadows: shadowed,
+            soft_taps: if shadowed { shadow::soft_taps(samples) } else { 0 },
+            orthographic,
+            encode: direct,
+            ..needs.key.clone()
+        };
+        let seen = VisibilityKey { hulls: shade.hulls, orthographic, light: false };
+        Plan { samples, direct, shadows, map_size, shade, seen }
+    }
+
+    /// How a light sees the scene. Outlines cast no shadows.
+    fn lit(shadow: &ShadowView) -> VisibilityKey {
+        VisibilityKey { hulls: false, orthographic: shadow.light.orthographic > 0.5, light: true }
+    }
+}
+
+/// Draws frames of one scene in one style. Everything on the device is kept from frame to frame, and written again only
+/// where it changed.
 pub struct Renderer {
     gpu: Arc<Gpu>,
     visibility: Visibility,
@@ -127,8 +133,10 @@ pub struct Renderer {
     resolve: resolve::Resolve,
     aov: aov::Aov,
     targets: Targets,
-    contents: Option<Contents>,
-    pipelines_built: u32,
+    contents: Contents,
+    eye: Eye,
+    light_eyes: Vec<Eye>,
+    maps: Option<ShadowMaps>,
     last_times: PassTimes,
 }
 
@@ -143,32 +151,60 @@ impl Renderer {
             resolve: resolve::Resolve::default(),
             aov: aov::Aov::default(),
             targets: Targets::default(),
-            contents: None,
-            pipelines_built: 0,
+            contents: Contents::default(),
+            eye: Eye::default(),
+            light_eyes: Vec::new(),
+            maps: None,
             last_times: Vec::new(),
         }
     }
 
-    /// Replaces what is drawn. On an error the former contents stay.
+    /// Replaces the materials and, where `list` is given, the objects. On an error what was drawn stays.
     ///
     /// # Errors
-    /// [`GpuError::TooMany`] where objects exceed a storage binding.
-    pub fn set_contents(&mut self, list: &DrawList, materials: &Materials) -> Result<(), GpuError> {
-        let objects = ObjectBuffers::upload(&self.gpu, list)?;
-        let array = |bytes, size| self.gpu.uniform_array("materials", bytes, size, MAX_MATERIALS);
-        let common = array(bytemuck::cast_slice(&materials.common), size_of::<Material>())?;
-        let params: Result<Vec<_>, _> = materials
-            .params
-            .iter()
-            .map(|(&shader, bytes)| array(bytes, SHADERS[shader].material_info().size))
-            .collect();
-        self.contents = Some(Contents {
-            objects,
-            materials: common,
-            params: params?,
-            needs: needs(list, materials),
-            reach: materials.reach(),
-        });
+    /// [`GpuError::TooMany`] where objects or materials exceed what the device binds.
+    pub fn set_contents(&mut self, list: Option<&DrawList>, materials: Materials) -> Result<(), GpuError> {
+        self.contents.set(&self.gpu, list, materials)
+    }
+
+    /// Builds every pipeline that such contents would need for such a frame, and changes nothing that is drawn.
+    ///
+    /// # Errors
+    /// [`GpuError`] where contents or picture do not fit the device, or a shader does not compile.
+    pub fn prepare(
+        &mut self,
+        list: Option<&DrawList>,
+        materials: &Materials,
+        input: &FrameInput<'_>,
+    ) -> Result<(), GpuError> {
+        check_size(&self.gpu, input.size)?;
+        let needs = self.contents.needs_of(&self.gpu, list, materials)?;
+        self.build(&needs, &Plan::new(&self.gpu, &needs, input), input.wide)
+    }
+
+    /// Builds all pipelines anew from the shaders as they are now.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] where one does not compile; all stay as they were then.
+    pub fn rebuild_pipelines(&mut self) -> Result<(), GpuError> {
+        let visibility = self.visibility.rebuilt(&self.gpu)?;
+        let resolve = self.resolve.rebuilt(&self.gpu)?;
+        self.shade.rebuild(&self.gpu, &visibility)?;
+        self.visibility = visibility;
+        self.resolve = resolve;
+        self.aov = aov::Aov::default();
+        Ok(())
+    }
+
+    fn build(&mut self, needs: &Needs, plan: &Plan, wide: bool) -> Result<(), GpuError> {
+        let gpu = &self.gpu;
+        for key in std::iter::once(plan.seen).chain(plan.shadows.views.iter().map(Plan::lit)) {
+            self.visibility.prepare(gpu, needs.kinds, key)?;
+        }
+        self.shade.prepare(gpu, &self.visibility, &plan.shade)?;
+        if !plan.direct {
+            self.resolve.prepare(gpu, wide)?;
+        }
         Ok(())
     }
 
@@ -184,80 +220,55 @@ impl Renderer {
     ) -> Result<(), GpuError> {
         let gpu = Arc::clone(&self.gpu);
         check_size(&gpu, input.size)?;
-        let Some(contents) = &self.contents else { return Ok(()) };
+        let Some(materials) = self.contents.common() else { return Ok(()) };
 
-        // What this frame needs.
-        let samples = input.samples.clamp(1, MAX_SAMPLES);
-        let direct = samples == 1 && !input.wide;
-        let plan = ShadowPlan::new(input.lighting, input.camera, input.bounds, shadow::map_size(&gpu, input.size[1]));
-        let shadowed = !plan.views.is_empty();
-        let key = ShadeKey {
-            lights: input.lighting.lights.len().min(MAX_LIGHTS) as u32,
-            point_lights: input.lighting.lights.iter().any(|light| matches!(light.place, LightPlace::Point { .. })),
-            shadows: shadowed,
-            soft_taps: if shadowed { shadow::soft_taps(samples) } else { 0 },
-            orthographic: input.camera.orthographic,
-            encode: direct,
-            ..contents.needs.clone()
-        };
-        let hulls = key.hulls;
-
-        // Pipelines and targets that are not there yet.
-        let seen = VisibilityKey { hulls, orthographic: input.camera.orthographic, light: false };
-        // Outlines cast no shadows.
-        let lit = |shadow: &ShadowView| VisibilityKey {
-            hulls: false,
-            orthographic: shadow.light.orthographic > 0.5,
-            light: true,
-        };
-        for key in std::iter::once(seen).chain(plan.views.iter().map(lit)) {
-            self.pipelines_built += self.visibility.prepare(&gpu, &contents.objects, key)?;
-        }
-        self.pipelines_built += self.shade.prepare(&gpu, &self.visibility, &key)?;
-        if !direct {
-            self.pipelines_built += self.resolve.prepare(&gpu, input.wide)?;
-        }
-        let maps =
-            shadowed.then(|| ShadowMaps::new(&gpu, plan.views[0].light.size_px[0] as u32, plan.views.len() as u32));
-        self.targets.fit(&gpu, input.size, if input.wide { OUTPUT_16 } else { OUTPUT_8 }, !direct);
+        // What this frame needs, and what of it is not there yet.
+        let needs = self.contents.needs();
+        let plan = Plan::new(&gpu, &needs, input);
+        self.build(&needs, &plan, input.wide)?;
+        self.targets.fit(&gpu, input.size, if input.wide { OUTPUT_16 } else { OUTPUT_8 }, !plan.direct);
+        self.fit_shadows(&plan);
 
         // Uniforms and bindings: a view for each sample, and the view of each light that casts shadows.
         let view = View::new(input.camera, input.size);
+        let samples = plan.samples;
         let views: Vec<View> =
             (0..).zip(sample_offsets_px(samples)).map(|(index, offset)| view.sample(index, samples, offset)).collect();
-        let bind =
-            |views: &[View], reach| self.visibility.bind(&gpu, &contents.objects, &contents.materials, views, reach);
-        let scene = bind(&views, contents.reach)?;
-        let lit_scenes: Result<Vec<_>, _> =
-            plan.views.iter().map(|shadow| bind(&[shadow.light], Reach::default())).collect();
-        let lit_scenes = lit_scenes?;
+        let (objects, reach) = (&self.contents.objects, self.contents.reach());
+        let Some(scene) = self.visibility.bind(&gpu, &mut self.eye, objects, &materials, &views, reach)? else {
+            return Ok(());
+        };
+        let mut lit_scenes = Vec::with_capacity(plan.shadows.views.len());
+        for (eye, shadow) in self.light_eyes.iter_mut().zip(&plan.shadows.views) {
+            let views = [shadow.light];
+            lit_scenes.extend(self.visibility.bind(&gpu, eye, objects, &materials, &views, Reach::default())?);
+        }
         let [ids, depth, output] = self.targets.views()?;
         let light = self.targets.light_view();
-        let shadow_uniform = plan.uniform();
+        let shadow_uniform = plan.shadows.uniform();
         let inputs = ShadeInputs {
-            lights: &Lights::new(input.lighting, &plan.layers),
+            lights: &Lights::new(input.lighting, &plan.shadows.layers),
             output: &Output { background: input.background },
             visibility: &ids,
-            shadows: maps.as_ref().map(|maps| (maps, &shadow_uniform)),
-            materials: &contents.params,
+            shadows: self.maps.as_ref().map(|maps| (maps, &shadow_uniform)),
+            materials: &self.contents.params,
         };
-        let Some(shade_group) = self.shade.bind(&gpu, &key, &inputs) else { return Ok(()) };
+        let Some((shade_group, background)) = self.shade.bind(&gpu, &plan.shade, &inputs)? else { return Ok(()) };
         let mut timer = if timed { PassTimer::new(&gpu) } else { None };
 
         // The frame, in submissions of a few samples each, so that progress can be told.
         let mut encoder = frame_encoder(&gpu);
-        for (layer, (shadow, lit_scene)) in (0..).zip(plan.views.iter().zip(&lit_scenes)) {
-            let Some(maps) = &maps else { break };
-            let (map_ids, map_depth) = maps.layer(layer);
-            let pass = VisibilityPass { name: "shadow", view: 0, key: lit(shadow), ids: &map_ids, depth: &map_depth };
+        let layers = self.maps.iter().flat_map(ShadowMaps::layers);
+        for ((ids, depth), (shadow, lit_scene)) in layers.zip(plan.shadows.views.iter().zip(&lit_scenes)) {
+            let pass = VisibilityPass { name: "shadow", view: 0, key: Plan::lit(shadow), ids, depth };
             self.visibility.draw(&mut encoder, lit_scene, &pass, &mut timer);
         }
-        let clear = if direct { clear_value(input.background) } else { wgpu::Color::TRANSPARENT };
+        let clear = if plan.direct { clear_value(input.background) } else { wgpu::Color::TRANSPARENT };
         let target = ShadeTarget { light: light.as_ref().unwrap_or(&output), depth: &depth, clear };
         for index in 0..samples as usize {
-            let pass = VisibilityPass { name: "visibility", view: index, key: seen, ids: &ids, depth: &depth };
+            let pass = VisibilityPass { name: "visibility", view: index, key: plan.seen, ids: &ids, depth: &depth };
             self.visibility.draw(&mut encoder, &scene, &pass, &mut timer);
-            self.shade.draw(&mut encoder, &key, &scene, index, &shade_group, &target, &mut timer);
+            self.shade.draw(&mut encoder, &plan.shade, &scene, index, &shade_group, &target, &mut timer);
             if (index + 1) % SAMPLES_PER_SUBMISSION == 0 && index + 1 < samples as usize {
                 gpu.queue.submit([std::mem::replace(&mut encoder, frame_encoder(&gpu)).finish()]);
                 gpu.wait()?;
@@ -265,7 +276,7 @@ impl Renderer {
             }
         }
         if let Some(light) = &light {
-            self.resolve.draw(&gpu, &mut encoder, input.wide, inputs.output, light, &output, &mut timer);
+            self.resolve.draw(&gpu, &mut encoder, input.wide, &background, light, &output, &mut timer);
         }
         if let Some(timer) = &timer {
             timer.resolve(&mut encoder);
@@ -276,8 +287,18 @@ impl Renderer {
             Some(timer) => timer.read(&gpu)?,
             None => Vec::new(),
         };
-        self.targets.note_shadow_bytes(maps.as_ref().map_or(0, ShadowMaps::bytes));
+        self.targets.note_shadow_bytes(self.maps.as_ref().map_or(0, ShadowMaps::bytes));
         Ok(())
+    }
+
+    /// Makes shadow maps and the eyes of lights as the frame needs them; what fits already stays.
+    fn fit_shadows(&mut self, plan: &Plan) {
+        let count = plan.shadows.views.len();
+        self.light_eyes.resize_with(count, Eye::default);
+        let former = self.maps.take().filter(|maps| maps.fit(plan.map_size, count as u32));
+        if count > 0 {
+            self.maps = Some(former.unwrap_or_else(|| ShadowMaps::new(&self.gpu, plan.map_size, count as u32)));
+        }
     }
 
     /// The last still: straight-alpha sRGB, rows from the top, 4 channels of 8 bits, or of 16 bits in native order.
@@ -297,11 +318,15 @@ impl Renderer {
         let single = FrameInput { samples: 1, wide: true, ..input.clone() };
         self.render(&single, false, &mut |_| ())?;
         let gpu = Arc::clone(&self.gpu);
-        let Some(contents) = &self.contents else {
+        let (view, objects, reach) =
+            (View::new(input.camera, input.size), &self.contents.objects, self.contents.reach());
+        let scene = match self.contents.common() {
+            Some(materials) => self.visibility.bind(&gpu, &mut self.eye, objects, &materials, &[view], reach)?,
+            None => None,
+        };
+        let Some(scene) = scene else {
             return Ok(Aovs { geometry: Vec::new(), ids: Vec::new(), color: Vec::new() });
         };
-        let view = View::new(input.camera, input.size);
-        let scene = self.visibility.bind(&gpu, &contents.objects, &contents.materials, &[view], contents.reach)?;
         let [ids, _, _] = self.targets.views()?;
         let geometry = gpu.target("geometry", input.size, 1, aov::GEOMETRY_FORMAT);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("aov") });
@@ -333,52 +358,14 @@ impl Renderer {
         &self.last_times
     }
 
-    /// How many pipelines were built so far.
-    pub fn pipelines_built(&self) -> u32 {
-        self.pipelines_built
-    }
-
     /// Spheres and cylinders that are drawn.
     pub fn object_counts(&self) -> [u32; 2] {
-        self.contents.as_ref().map_or([0, 0], |c| [c.objects.num_atoms, c.objects.num_connectors])
+        [self.contents.objects.num_atoms, self.contents.objects.num_connectors]
     }
 
     /// Bytes of each target of the last frame.
     pub fn target_bytes(&self) -> TargetBytes {
         self.targets.bytes()
-    }
-}
-
-/// What the shading of these objects reads, lights and output aside.
-fn needs(list: &DrawList, materials: &Materials) -> ShadeKey {
-    fn common(mut materials: impl Iterator<Item = u32>) -> Option<u32> {
-        let first = materials.next()?;
-        materials.all(|material| material == first).then_some(first)
-    }
-    let shaders = materials.params.keys().map(|&shader| ShaderNeeds {
-        shader,
-        features: materials.features.get(&shader).copied().unwrap_or(0),
-        only_material: {
-            let mut using = (0..).zip(&materials.common).filter(|(_, material)| material.shader as usize == shader);
-            match (using.next(), using.next()) {
-                (Some((material, _)), None) => Some(material),
-                _ => None,
-            }
-        },
-    });
-    ShadeKey {
-        shaders: shaders.collect(),
-        atoms: !list.atoms.is_empty(),
-        connectors: !list.connectors.is_empty(),
-        atom_material: common(list.atoms.iter().map(|atom| atom.material)),
-        connector_material: common(list.connectors.iter().map(|connector| connector.material)),
-        hulls: materials.has_hulls(),
-        lights: 0,
-        point_lights: false,
-        shadows: false,
-        soft_taps: 0,
-        orthographic: false,
-        encode: false,
     }
 }
 

@@ -76,12 +76,10 @@ pub struct DrawList {
     pub connectors: Vec<Connector>,
 }
 
-/// The draw list in buffers, and the orders to draw it in.
+/// The draw list on the device, and the balls by which its drawing order is found.
 pub struct ObjectBuffers {
-    /// All atoms.
-    pub atoms: wgpu::TextureView,
-    /// All connectors.
-    pub connectors: wgpu::TextureView,
+    atoms: KeptTexture,
+    connectors: KeptTexture,
     /// How many atoms.
     pub num_atoms: u32,
     /// How many connectors.
@@ -90,67 +88,147 @@ pub struct ObjectBuffers {
     pub atom_balls: Vec<Ball>,
     /// Spheres around the connectors.
     pub connector_balls: Vec<Ball>,
+    /// Another number for each content.
+    pub generation: u64,
+}
+
+impl Default for ObjectBuffers {
+    fn default() -> ObjectBuffers {
+        ObjectBuffers {
+            atoms: KeptTexture::new("atoms"),
+            connectors: KeptTexture::new("connectors"),
+            num_atoms: 0,
+            num_connectors: 0,
+            atom_balls: Vec::new(),
+            connector_balls: Vec::new(),
+            generation: 0,
+        }
+    }
 }
 
 impl ObjectBuffers {
-    /// Uploads a draw list.
+    /// Replaces the content; rows of it that stay the same are not written. On an error the former content stays.
     ///
     /// # Errors
-    /// [`GpuError::TooMany`] beyond the largest storage binding.
-    pub fn upload(gpu: &Gpu, list: &DrawList) -> Result<ObjectBuffers, GpuError> {
+    /// [`GpuError::TooMany`] beyond the largest texture.
+    pub fn set(&mut self, gpu: &Gpu, list: &DrawList) -> Result<(), GpuError> {
+        check(gpu, list)?;
         let atom_ball = |atom: &Atom| Ball { center: Vec3::from(atom.position_world), radius: atom.radius };
         let connector_ball = |connector: &Connector| {
             let (a, b) = (Vec3::from(connector.a_world), Vec3::from(connector.b_world));
             Ball { center: (a + b) * 0.5, radius: 0.5 * a.distance(b) + connector.radius }
         };
-        Ok(ObjectBuffers {
-            atoms: upload(gpu, "atoms", &list.atoms)?,
-            connectors: upload(gpu, "connectors", &list.connectors)?,
-            num_atoms: list.atoms.len() as u32,
-            num_connectors: list.connectors.len() as u32,
-            atom_balls: list.atoms.iter().map(atom_ball).collect(),
-            connector_balls: list.connectors.iter().map(connector_ball).collect(),
-        })
+        self.atoms.set(gpu, bytemuck::cast_slice(&list.atoms));
+        self.connectors.set(gpu, bytemuck::cast_slice(&list.connectors));
+        self.num_atoms = list.atoms.len() as u32;
+        self.num_connectors = list.connectors.len() as u32;
+        self.atom_balls = list.atoms.iter().map(atom_ball).collect();
+        self.connector_balls = list.connectors.iter().map(connector_ball).collect();
+        self.generation += 1;
+        Ok(())
     }
+
+    /// Atoms and connectors to bind; none before the first content.
+    pub fn views(&self) -> Option<[wgpu::TextureView; 2]> {
+        Some([self.atoms.view()?, self.connectors.view()?])
+    }
+}
+
+/// Refuses a draw list that does not fit the device.
+///
+/// # Errors
+/// [`GpuError::TooMany`] beyond the largest texture.
+pub fn check(gpu: &Gpu, list: &DrawList) -> Result<(), GpuError> {
+    let limit = u64::from(gpu.device.limits().max_texture_dimension_2d) * ROW_BYTES as u64;
+    for (what, count, bytes) in [
+        ("atoms", list.atoms.len(), size_of_val(&list.atoms[..])),
+        ("connectors", list.connectors.len(), size_of_val(&list.connectors[..])),
+    ] {
+        if bytes as u64 > limit {
+            return Err(GpuError::TooMany { what, count, bytes: bytes as u64, limit });
+        }
+    }
+    Ok(())
 }
 
 /// Texels in a row of the object textures; `OBJECT_ROW` in `shaders/lib/objects.wgsl`.
 const OBJECT_ROW: u32 = 2048;
 
-/// Puts objects into a texture, one texel of four 32-bit words for each 16 bytes.
-fn upload<T: bytemuck::Pod>(gpu: &Gpu, what: &'static str, items: &[T]) -> Result<wgpu::TextureView, GpuError> {
-    let row_bytes = OBJECT_ROW as usize * 16;
-    let bytes: &[u8] = bytemuck::cast_slice(items);
-    let rows = bytes.len().div_ceil(row_bytes).max(1);
-    let limit = gpu.device.limits().max_texture_dimension_2d;
-    if rows > limit as usize {
-        let limit = u64::from(limit) * row_bytes as u64;
-        return Err(GpuError::TooMany { what, count: items.len(), bytes: bytes.len() as u64, limit });
+/// A texel holds four 32-bit words.
+const TEXEL_BYTES: usize = 16;
+
+/// Bytes in a row.
+const ROW_BYTES: usize = OBJECT_ROW as usize * TEXEL_BYTES;
+
+/// Objects in a texture, one texel for each 16 bytes, and a hash of each row, so that a row that stays is not written.
+struct KeptTexture {
+    label: &'static str,
+    texture: Option<(wgpu::Texture, wgpu::TextureView)>,
+    row_hashes: Vec<u64>,
+}
+
+impl KeptTexture {
+    fn new(label: &'static str) -> KeptTexture {
+        KeptTexture { label, texture: None, row_hashes: Vec::new() }
     }
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(what),
-        size: wgpu::Extent3d { width: OBJECT_ROW, height: rows as u32, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba32Uint,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
-    // Whole rows first, then what is left of the last one.
-    let whole = bytes.len() / row_bytes;
-    let write = |row: u32, width: u32, height: u32, bytes: &[u8]| {
-        if width > 0 && height > 0 {
-            let to =
-                wgpu::TexelCopyTextureInfo { origin: wgpu::Origin3d { x: 0, y: row, z: 0 }, ..texture.as_image_copy() };
-            let layout =
-                wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes as u32), rows_per_image: None };
-            let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
-            gpu.queue.write_texture(to, bytes, layout, size);
+
+    fn view(&self) -> Option<wgpu::TextureView> {
+        self.texture.as_ref().map(|(_, view)| view.clone())
+    }
+
+    fn set(&mut self, gpu: &Gpu, bytes: &[u8]) {
+        let rows = bytes.len().div_ceil(ROW_BYTES).max(1) as u32;
+        let hashes: Vec<u64> = bytes.chunks(ROW_BYTES).map(hash).collect();
+        // A texture that grew for a large scene is given back once a small one would fit it four times.
+        let fits = |texture: &wgpu::Texture| (rows..=4 * rows).contains(&texture.height());
+        if !self.texture.as_ref().is_some_and(|(texture, _)| fits(texture)) {
+            let texture = gpu.texture(&wgpu::TextureDescriptor {
+                label: Some(self.label),
+                size: wgpu::Extent3d { width: OBJECT_ROW, height: rows, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: wgpu::TextureFormat::Rgba32Uint,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+                view_formats: &[],
+            });
+            let view = texture.create_view(&Default::default());
+            self.texture = Some((texture, view));
+            self.row_hashes.clear();
         }
-    };
-    let (full, rest) = bytes.split_at(whole * row_bytes);
-    write(0, OBJECT_ROW, whole as u32, full);
-    write(whole as u32, (rest.len() / 16) as u32, 1, rest);
-    Ok(texture.create_view(&Default::default()))
+        let Some((texture, _)) = &self.texture else { return };
+        let changed = |row: usize| self.row_hashes.get(row) != hashes.get(row);
+        let mut row = 0;
+        while row < hashes.len() {
+            // Whole rows that changed go in one write, a row that is not full by itself.
+            let is_full = |row: usize| (row + 1) * ROW_BYTES <= bytes.len();
+            let mut end = row;
+            while end < hashes.len() && changed(end) && is_full(end) {
+                end += 1;
+            }
+            if end > row {
+                write_rows(gpu, texture, row, OBJECT_ROW, &bytes[row * ROW_BYTES..end * ROW_BYTES]);
+            } else if changed(row) {
+                let rest = &bytes[row * ROW_BYTES..];
+                write_rows(gpu, texture, row, (rest.len() / TEXEL_BYTES) as u32, rest);
+            }
+            row = end.max(row + 1);
+        }
+        self.row_hashes = hashes;
+    }
+}
+
+fn write_rows(gpu: &Gpu, texture: &wgpu::Texture, row: usize, width: u32, bytes: &[u8]) {
+    let origin = wgpu::Origin3d { x: 0, y: row as u32, z: 0 };
+    let to = wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() };
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(ROW_BYTES as u32), rows_per_image: None };
+    let height = bytes.len().div_ceil(ROW_BYTES) as u32;
+    gpu.write_texture(to, bytes, layout, wgpu::Extent3d { width, height, depth_or_array_layers: 1 });
+}
+
+fn hash(row: &[u8]) -> u64 {
+    use std::hash::Hasher;
+    let mut hasher = std::hash::DefaultHasher::new();
+    hasher.write(row);
+    hasher.finish()
 }

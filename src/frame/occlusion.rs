@@ -25,7 +25,7 @@ pub struct Ball {
 }
 
 /// What hull outlines add to the reach of an object.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Reach {
     /// In pixels.
     pub px: f32,

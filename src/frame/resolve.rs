@@ -3,24 +3,24 @@
 use std::collections::BTreeMap;
 
 use super::fullscreen;
-use super::shade::Output;
-use crate::gpu::{Gpu, GpuError, Module, PassTimer};
+use crate::gpu::{Bound, Gpu, GpuError, KeptBindGroup, Module, PassTimer};
 use crate::wgsl;
 
 /// Pipelines of the resolve pass, by bits a channel.
 #[derive(Default)]
 pub struct Resolve {
     pipelines: BTreeMap<bool, (wgpu::BindGroupLayout, wgpu::RenderPipeline)>,
+    group: KeptBindGroup,
 }
 
 impl Resolve {
-    /// Builds the pipeline for 8 or 16 bits, unless it is there. Returns how many were built.
+    /// Builds the pipeline for 8 or 16 bits, unless it is there.
     ///
     /// # Errors
     /// [`GpuError::Driver`] where the shader does not compile.
-    pub fn prepare(&mut self, gpu: &Gpu, wide: bool) -> Result<u32, GpuError> {
+    pub fn prepare(&mut self, gpu: &Gpu, wide: bool) -> Result<(), GpuError> {
         if self.pipelines.contains_key(&wide) {
-            return Ok(0);
+            return Ok(());
         }
         let light = fullscreen::texture(wgpu::TextureSampleType::Float { filterable: false });
         let layout = fullscreen::layout(gpu, "resolve", &[fullscreen::UNIFORM, light]);
@@ -28,33 +28,36 @@ impl Resolve {
         let pipeline =
             fullscreen::pipeline(gpu, "resolve", &resolve_module(), ["resolve_vertex", entry], &[&layout], format)?;
         self.pipelines.insert(wide, (layout, pipeline));
-        Ok(1)
+        Ok(())
     }
 
-    /// Resolves `light` into `target`.
+    /// Resolves `light` into `target`, over the background that `output` holds.
     #[allow(clippy::too_many_arguments)]
     pub fn draw(
-        &self,
+        &mut self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         wide: bool,
-        output: &Output,
+        output: &wgpu::Buffer,
         light: &wgpu::TextureView,
         target: &wgpu::TextureView,
         timer: &mut Option<PassTimer>,
     ) {
         let Some((layout, pipeline)) = self.pipelines.get(&wide) else { return };
-        let output = gpu.uniform("output", output);
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("resolve"),
-            layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: output.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(light) },
-            ],
-        });
+        let bound = vec![(0, Bound::Buffer(output.clone())), (1, Bound::View(light.clone()))];
+        let group = self.group.get(gpu, "resolve", layout, bound);
         let times = timer.as_mut().and_then(|timer| timer.pass("resolve"));
         fullscreen::draw(encoder, "resolve", pipeline, &[(&group, &[])], target, times);
+    }
+
+    /// Builds the pipelines that are there anew, from the shaders as they are now.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] where a shader does not compile.
+    pub fn rebuilt(&self, gpu: &Gpu) -> Result<Resolve, GpuError> {
+        let mut fresh = Resolve::default();
+        self.pipelines.keys().try_for_each(|&wide| fresh.prepare(gpu, wide))?;
+        Ok(fresh)
     }
 }
 

@@ -6,7 +6,7 @@ use std::collections::btree_map::Entry;
 use super::lights::Lights;
 use super::shadow::{ShadowMaps, Shadows};
 use super::visibility::{DEPTH_FORMAT, SceneBindings, Visibility};
-use crate::gpu::{Gpu, GpuError, Module, PassTimer};
+use crate::gpu::{Bound, Gpu, GpuError, KeptBindGroup, KeptBuffer, Module, PassTimer};
 use crate::gpu_struct;
 use crate::shading::{self, ObjectShader, SHADERS, UploadedResource};
 use crate::wgsl;
@@ -67,6 +67,8 @@ const FIRST_SHADER_BINDING: u32 = 5;
 struct ShadePipeline {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::RenderPipeline,
+    /// When it was used last, in uses of any pipeline.
+    last_use: u64,
 }
 
 /// What the shading pass reads beside the scene.
@@ -79,8 +81,8 @@ pub struct ShadeInputs<'a> {
     pub visibility: &'a wgpu::TextureView,
     /// Shadow maps and their views, where lights cast shadows.
     pub shadows: Option<(&'a ShadowMaps, &'a Shadows)>,
-    /// Material bytes of each shader of the key, in its order.
-    pub materials: &'a [wgpu::Buffer],
+    /// Parameter sets of each shader, by its registry place.
+    pub materials: &'a BTreeMap<usize, KeptBuffer>,
 }
 
 /// Where the shading pass draws.
@@ -93,19 +95,41 @@ pub struct ShadeTarget<'a> {
     pub clear: wgpu::Color,
 }
 
-/// Pipelines of the shading pass, by need, and the resources of its shaders.
-#[derive(Default)]
+/// Pipelines of the shading pass, by need, the resources of its shaders, and its uniforms.
 pub struct Shade {
     pipelines: BTreeMap<ShadeKey, ShadePipeline>,
+    uses: u64,
     resources: BTreeMap<usize, Vec<UploadedResource>>,
+    lights: KeptBuffer,
+    output: KeptBuffer,
+    shadows: KeptBuffer,
+    group: KeptBindGroup,
+}
+
+/// Pipelines that are kept, the ones used last. Ours: a designer goes back and forth between a few states, and each new
+/// set of features makes one; without an end, a day of saves would fill the memory.
+const MOST_PIPELINES: usize = 32;
+
+impl Default for Shade {
+    fn default() -> Shade {
+        Shade {
+            pipelines: BTreeMap::new(),
+            uses: 0,
+            resources: BTreeMap::new(),
+            lights: KeptBuffer::uniform("lights"),
+            output: KeptBuffer::uniform("output"),
+            shadows: KeptBuffer::uniform("shadows"),
+            group: KeptBindGroup::default(),
+        }
+    }
 }
 
 impl Shade {
-    /// Builds the pipeline of a key, unless it is there. Returns how many were built.
+    /// Builds the pipeline of a key, unless it is there.
     ///
     /// # Errors
     /// [`GpuError::Driver`] where a shader does not compile.
-    pub fn prepare(&mut self, gpu: &Gpu, visibility: &Visibility, key: &ShadeKey) -> Result<u32, GpuError> {
+    pub fn prepare(&mut self, gpu: &Gpu, visibility: &Visibility, key: &ShadeKey) -> Result<(), GpuError> {
         for shader in key.shaders.iter().map(|needs| needs.shader) {
             if let Entry::Vacant(entry) = self.resources.entry(shader) {
                 let uploaded: Result<Vec<_>, _> =
@@ -113,9 +137,35 @@ impl Shade {
                 entry.insert(uploaded?);
             }
         }
-        if self.pipelines.contains_key(key) {
-            return Ok(0);
+        self.uses += 1;
+        if let Some(pipeline) = self.pipelines.get_mut(key) {
+            pipeline.last_use = self.uses;
+            return Ok(());
         }
+        let built = self.build(gpu, visibility, key)?;
+        if self.pipelines.len() >= MOST_PIPELINES
+            && let Some(oldest) = self.pipelines.iter().min_by_key(|(_, pipeline)| pipeline.last_use)
+        {
+            let oldest = oldest.0.clone();
+            self.pipelines.remove(&oldest);
+        }
+        self.pipelines.insert(key.clone(), built);
+        Ok(())
+    }
+
+    /// Builds the pipelines that are there anew, from the shaders as they are now, and keeps everything else.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] where a shader does not compile; nothing has changed then.
+    pub fn rebuild(&mut self, gpu: &Gpu, visibility: &Visibility) -> Result<(), GpuError> {
+        let keys: Vec<ShadeKey> = self.pipelines.keys().cloned().collect();
+        let fresh: Result<BTreeMap<_, _>, GpuError> =
+            keys.into_iter().map(|key| Ok((key.clone(), self.build(gpu, visibility, &key)?))).collect();
+        self.pipelines = fresh?;
+        Ok(())
+    }
+
+    fn build(&self, gpu: &Gpu, visibility: &Visibility, key: &ShadeKey) -> Result<ShadePipeline, GpuError> {
         let module = shade_module(key).compile(gpu, "shade")?;
         let layout = self.layout(gpu, key);
         let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -137,7 +187,7 @@ impl Shade {
                 write_mask: wgpu::ColorWrites::ALL,
             }
         };
-        let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        let pipeline = gpu.render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("shade"),
             layout: Some(&pipeline_layout),
             vertex: wgpu::VertexState {
@@ -164,9 +214,8 @@ impl Shade {
             }),
             multiview_mask: None,
             cache: None,
-        });
-        self.pipelines.insert(key.clone(), ShadePipeline { layout, pipeline });
-        Ok(1)
+        })?;
+        Ok(ShadePipeline { layout, pipeline, last_use: self.uses })
     }
 
     fn layout(&self, gpu: &Gpu, key: &ShadeKey) -> wgpu::BindGroupLayout {
@@ -210,39 +259,44 @@ impl Shade {
             .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("shade"), entries: &entries })
     }
 
-    /// Binds the inputs of one frame.
-    pub fn bind(&self, gpu: &Gpu, key: &ShadeKey, inputs: &ShadeInputs<'_>) -> Option<wgpu::BindGroup> {
-        let pipeline = self.pipelines.get(key)?;
-        let lights = gpu.uniform("lights", inputs.lights);
-        let output = gpu.uniform("output", inputs.output);
-        let shadows = inputs.shadows.map(|(maps, uniform)| (maps.all(), gpu.uniform("shadows", uniform)));
-        let mut entries = vec![
-            wgpu::BindGroupEntry { binding: 0, resource: lights.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 1, resource: output.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(inputs.visibility) },
+    /// Binds the inputs of one frame; none where the key's pipeline is not there. Returns the buffer of the background
+    /// as well, which resolving reads.
+    ///
+    /// # Errors
+    /// Never for uniforms of a fixed size.
+    pub fn bind(
+        &mut self,
+        gpu: &Gpu,
+        key: &ShadeKey,
+        inputs: &ShadeInputs<'_>,
+    ) -> Result<Option<(wgpu::BindGroup, wgpu::Buffer)>, GpuError> {
+        let output = self.output.set(gpu, bytemuck::bytes_of(inputs.output), 0)?;
+        let lights = self.lights.set(gpu, bytemuck::bytes_of(inputs.lights), 0)?;
+        let Some(pipeline) = self.pipelines.get(key) else { return Ok(None) };
+        let mut bound = vec![
+            (0, Bound::Buffer(lights)),
+            (1, Bound::Buffer(output.clone())),
+            (2, Bound::View(inputs.visibility.clone())),
         ];
-        if let Some((maps, uniform)) = &shadows {
-            entries.push(wgpu::BindGroupEntry { binding: 3, resource: uniform.as_entire_binding() });
-            entries.push(wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::TextureView(maps) });
+        if let Some((maps, uniform)) = inputs.shadows {
+            bound.push((3, Bound::Buffer(self.shadows.set(gpu, bytemuck::bytes_of(uniform), 0)?)));
+            bound.push((4, Bound::View(maps.all().clone())));
         }
         let mut binding = FIRST_SHADER_BINDING;
-        for (shader, materials) in key.shaders.iter().map(|needs| &needs.shader).zip(inputs.materials) {
-            entries.push(wgpu::BindGroupEntry { binding, resource: materials.as_entire_binding() });
+        for shader in key.shaders.iter().map(|needs| &needs.shader) {
+            let Some(materials) = inputs.materials.get(shader).and_then(KeptBuffer::get) else { return Ok(None) };
+            bound.push((binding, Bound::Buffer(materials)));
             binding += 1;
             for resource in self.resources.get(shader).into_iter().flatten() {
                 let resource = match resource {
-                    UploadedResource::Uniform(buffer) => buffer.as_entire_binding(),
-                    UploadedResource::Texture(view) => wgpu::BindingResource::TextureView(view),
+                    UploadedResource::Uniform(buffer) => Bound::Buffer(buffer.clone()),
+                    UploadedResource::Texture(view) => Bound::View(view.clone()),
                 };
-                entries.push(wgpu::BindGroupEntry { binding, resource });
+                bound.push((binding, resource));
                 binding += 1;
             }
         }
-        Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("shade"),
-            layout: &pipeline.layout,
-            entries: &entries,
-        }))
+        Ok(Some((self.group.get(gpu, "shade", &pipeline.layout, bound), output)))
     }
 
     /// Shades the pixels of view `view_index` that see something; the first view clears the target to `clear`.

@@ -133,37 +133,48 @@ pub fn map_size(gpu: &Gpu, picture_height_px: u32) -> u32 {
 /// The maps: ids and depths, one layer for each light.
 pub struct ShadowMaps {
     /// Ids and depths of what each light sees first.
-    pub seen: wgpu::Texture,
+    seen: wgpu::Texture,
+    /// Each layer, to draw to.
+    layers: Vec<wgpu::TextureView>,
+    /// All layers, to read from.
+    all: wgpu::TextureView,
     /// Depth to test with, used by one light after the other.
-    depth: wgpu::Texture,
+    depth: wgpu::TextureView,
 }
 
 impl ShadowMaps {
     /// Allocates `layers` maps.
     pub fn new(gpu: &Gpu, size: u32, layers: u32) -> ShadowMaps {
-        ShadowMaps {
-            seen: gpu.target("shadow maps", [size; 2], layers, LIGHT_FORMAT),
-            depth: gpu.target("shadow depth", [size; 2], 1, DEPTH_FORMAT),
-        }
-    }
-
-    /// One layer to draw to, and the depth to test with.
-    pub fn layer(&self, index: u32) -> (wgpu::TextureView, wgpu::TextureView) {
-        let seen = self.seen.create_view(&wgpu::TextureViewDescriptor {
-            dimension: Some(wgpu::TextureViewDimension::D2),
-            base_array_layer: index,
-            array_layer_count: Some(1),
+        let seen = gpu.target("shadow maps", [size; 2], layers, LIGHT_FORMAT);
+        let layer = |index| {
+            seen.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2),
+                base_array_layer: index,
+                array_layer_count: Some(1),
+                ..Default::default()
+            })
+        };
+        let all = seen.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
             ..Default::default()
         });
-        (seen, self.depth.create_view(&Default::default()))
+        let depth = gpu.target("shadow depth", [size; 2], 1, DEPTH_FORMAT).create_view(&Default::default());
+        ShadowMaps { layers: (0..layers).map(layer).collect(), all, depth, seen }
+    }
+
+    /// Whether these are `layers` maps of this size.
+    pub fn fit(&self, size: u32, layers: u32) -> bool {
+        self.seen.width() == size && self.layers.len() == layers as usize
+    }
+
+    /// The layers to draw to, with the depth to test with.
+    pub fn layers(&self) -> impl Iterator<Item = (&wgpu::TextureView, &wgpu::TextureView)> {
+        self.layers.iter().map(|layer| (layer, &self.depth))
     }
 
     /// All layers to read from.
-    pub fn all(&self) -> wgpu::TextureView {
-        self.seen.create_view(&wgpu::TextureViewDescriptor {
-            dimension: Some(wgpu::TextureViewDimension::D2Array),
-            ..Default::default()
-        })
+    pub fn all(&self) -> &wgpu::TextureView {
+        &self.all
     }
 
     /// Bytes of all maps.

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use super::objects::ObjectBuffers;
 use super::occlusion::{self, Reach};
 use super::view::View;
-use crate::gpu::{Gpu, GpuError, Module, PassTimer};
+use crate::gpu::{Bound, Gpu, GpuError, KeptBindGroup, KeptBuffer, Module, PassTimer};
 use crate::wgsl;
 
 /// Ids: kind in the upper 3 bits, index below.
@@ -32,13 +32,22 @@ pub struct VisibilityKey {
     pub light: bool,
 }
 
+/// Which kinds of objects are drawn at all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct DrawnKinds {
+    /// Whether there are atoms.
+    pub atoms: bool,
+    /// Whether there are connectors.
+    pub connectors: bool,
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     Atom,
     Connector,
 }
 
-/// Pipelines and bindings of the visibility pass. Builds only what is drawn.
+/// Pipelines of the visibility pass. Builds only what is drawn.
 pub struct Visibility {
     /// Group 0 of every pass that reads the scene: view, objects, materials, orders.
     pub layout: wgpu::BindGroupLayout,
@@ -59,12 +68,36 @@ pub struct VisibilityPass<'a> {
     pub depth: &'a wgpu::TextureView,
 }
 
-/// Group 0 with its buffers.
+/// Group 0 as one pass binds it.
 pub struct SceneBindings {
     /// To bind at group 0 with a [`SceneBindings::offset`].
     pub group: wgpu::BindGroup,
     /// Atoms and connectors that are drawn; the others are hidden.
     pub num_drawn: [u32; 2],
+}
+
+/// What one eye, the camera's or a light's, sees by, kept from frame to frame: its views, and the order of the objects.
+pub struct Eye {
+    views: KeptBuffer,
+    atom_order: KeptBuffer,
+    connector_order: KeptBuffer,
+    group: KeptBindGroup,
+    /// The view, objects and outlines that the orders are for.
+    ordered_for: Option<(Vec<u8>, u64, Reach)>,
+    num_drawn: [u32; 2],
+}
+
+impl Default for Eye {
+    fn default() -> Eye {
+        Eye {
+            views: KeptBuffer::uniform("views"),
+            atom_order: KeptBuffer::storage("atom order"),
+            connector_order: KeptBuffer::storage("connector order"),
+            group: KeptBindGroup::default(),
+            ordered_for: None,
+            num_drawn: [0; 2],
+        }
+    }
 }
 
 impl SceneBindings {
@@ -122,74 +155,77 @@ impl Visibility {
         Visibility { layout, pipelines: BTreeMap::new() }
     }
 
-    /// Binds objects, materials and the views of one eye; `reach` is what outlines add to the objects there.
+    /// Binds objects, materials and the views of one eye; `reach` is what outlines add to the objects there. The order
+    /// of the objects is found again only where the first view, the objects or the outlines are others.
     ///
     /// # Errors
     /// [`GpuError::TooMany`] where the orders exceed a binding.
     pub fn bind(
         &self,
         gpu: &Gpu,
+        eye: &mut Eye,
         objects: &ObjectBuffers,
         materials: &wgpu::Buffer,
         views: &[View],
         reach: Reach,
-    ) -> Result<SceneBindings, GpuError> {
+    ) -> Result<Option<SceneBindings>, GpuError> {
+        let Some([atoms, connectors]) = objects.views() else { return Ok(None) };
         let mut bytes = vec![0u8; views.len() * VIEW_STRIDE as usize];
         for (slot, view) in bytes.chunks_exact_mut(VIEW_STRIDE as usize).zip(views) {
             slot[..size_of::<View>()].copy_from_slice(bytemuck::bytes_of(view));
         }
-        let view_buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("views"),
-            size: bytes.len() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        gpu.queue.write_buffer(&view_buffer, 0, &bytes);
-        let cull = gpu.info.device_type == wgpu::DeviceType::Cpu;
-        let (atom_order, connector_order) =
-            occlusion::orders(&views[0], &objects.atom_balls, &objects.connector_balls, reach, cull);
-        let num_drawn = [atom_order.len() as u32, connector_order.len() as u32];
-        let atom_order = gpu.storage("atom order", &atom_order)?;
-        let connector_order = gpu.storage("connector order", &connector_order)?;
-        fn whole(binding: u32, buffer: &wgpu::Buffer) -> wgpu::BindGroupEntry<'_> {
-            wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }
+        let view_buffer = eye.views.set(gpu, &bytes, VIEW_STRIDE as usize)?;
+        let order_key = (bytemuck::bytes_of(&views[0]).to_vec(), objects.generation, reach);
+        if eye.ordered_for.as_ref() != Some(&order_key) {
+            eye.ordered_for = None;
+            let cull = gpu.info.device_type == wgpu::DeviceType::Cpu;
+            let (atom_order, connector_order) =
+                occlusion::orders(&views[0], &objects.atom_balls, &objects.connector_balls, reach, cull);
+            eye.atom_order.set(gpu, bytemuck::cast_slice(&atom_order), 4)?;
+            eye.connector_order.set(gpu, bytemuck::cast_slice(&connector_order), 4)?;
+            eye.num_drawn = [atom_order.len() as u32, connector_order.len() as u32];
+            eye.ordered_for = Some(order_key);
         }
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("scene"),
-            layout: &self.layout,
-            entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                        buffer: &view_buffer,
-                        offset: 0,
-                        size: std::num::NonZeroU64::new(size_of::<View>() as u64),
-                    }),
-                },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&objects.atoms) },
-                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(&objects.connectors) },
-                whole(3, materials),
-                whole(4, &atom_order),
-                whole(5, &connector_order),
-            ],
-        });
-        Ok(SceneBindings { group, num_drawn })
+        let (Some(atom_order), Some(connector_order)) = (eye.atom_order.get(), eye.connector_order.get()) else {
+            return Ok(None);
+        };
+        let bound = vec![
+            (0, Bound::Slice(view_buffer, size_of::<View>() as u64)),
+            (1, Bound::View(atoms)),
+            (2, Bound::View(connectors)),
+            (3, Bound::Buffer(materials.clone())),
+            (4, Bound::Buffer(atom_order)),
+            (5, Bound::Buffer(connector_order)),
+        ];
+        let group = eye.group.get(gpu, "scene", &self.layout, bound);
+        Ok(Some(SceneBindings { group, num_drawn: eye.num_drawn }))
     }
 
-    /// Builds the pipelines that `objects` need.
+    /// Builds the pipelines that atoms and connectors need, unless they are there.
     ///
     /// # Errors
     /// [`GpuError::Driver`] where a shader does not compile.
-    pub fn prepare(&mut self, gpu: &Gpu, objects: &ObjectBuffers, key: VisibilityKey) -> Result<u32, GpuError> {
-        let mut built = 0;
-        for (kind, count) in [(Kind::Atom, objects.num_atoms), (Kind::Connector, objects.num_connectors)] {
-            if count > 0 && !self.pipelines.contains_key(&(kind, key)) {
+    pub fn prepare(&mut self, gpu: &Gpu, kinds: DrawnKinds, key: VisibilityKey) -> Result<(), GpuError> {
+        for (kind, drawn) in [(Kind::Atom, kinds.atoms), (Kind::Connector, kinds.connectors)] {
+            if drawn && !self.pipelines.contains_key(&(kind, key)) {
                 let pipeline = self.build(gpu, kind, key)?;
                 self.pipelines.insert((kind, key), pipeline);
-                built += 1;
             }
         }
-        Ok(built)
+        Ok(())
+    }
+
+    /// Builds the pipelines that are there anew, from the shaders as they are now.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] where a shader does not compile.
+    pub fn rebuilt(&self, gpu: &Gpu) -> Result<Visibility, GpuError> {
+        let mut fresh = Visibility { layout: self.layout.clone(), pipelines: BTreeMap::new() };
+        for &(kind, key) in self.pipelines.keys() {
+            let pipeline = fresh.build(gpu, kind, key)?;
+            fresh.pipelines.insert((kind, key), pipeline);
+        }
+        Ok(fresh)
     }
 
     fn build(&self, gpu: &Gpu, kind: Kind, key: VisibilityKey) -> Result<wgpu::RenderPipeline, GpuError> {
@@ -203,7 +239,7 @@ impl Visibility {
             bind_group_layouts: &[Some(&self.layout)],
             immediate_size: 0,
         });
-        Ok(gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        gpu.render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("visibility"),
             layout: Some(&layout),
             vertex: wgpu::VertexState {
@@ -229,7 +265,7 @@ impl Visibility {
             }),
             multiview_mask: None,
             cache: None,
-        }))
+        })
     }
 
     /// Draws all objects, as the pass's view of the bindings sees them.

@@ -2,6 +2,9 @@
 
 use std::sync::{Arc, Mutex};
 
+use super::counters::{Counters, Counting};
+use super::wgsl::ShaderEdits;
+
 /// Why the graphics device cannot do what is asked. Exit code 3.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
@@ -41,6 +44,12 @@ pub enum GpuError {
         /// Bytes that one binding may hold.
         limit: u64,
     },
+    /// A shader that was edited in a source tree does not compile.
+    #[error("{0}")]
+    Shader(String),
+    /// Neither scene nor style has loaded yet.
+    #[error("there is nothing to draw yet: scene or style has not loaded")]
+    NothingToDraw,
     /// The driver reported an error: out of memory, a lost device, or a mistake of ours.
     #[error("the graphics driver reported: {0}")]
     Driver(String),
@@ -55,6 +64,9 @@ pub struct Gpu {
     /// Name, driver and kind of the adapter.
     pub info: wgpu::AdapterInfo,
     failure: Arc<Mutex<Option<String>>>,
+    counting: Counting,
+    readback: Mutex<Option<wgpu::Buffer>>,
+    shader_edits: Mutex<Arc<ShaderEdits>>,
 }
 
 impl Gpu {
@@ -99,7 +111,15 @@ impl Gpu {
                 slot.get_or_insert(error.to_string());
             }
         }));
-        Ok(Gpu { device, queue, info, failure })
+        Ok(Gpu {
+            device,
+            queue,
+            info,
+            failure,
+            counting: Counting::default(),
+            readback: Mutex::new(None),
+            shader_edits: Mutex::default(),
+        })
     }
 
     /// The first error that the driver reported since the last call.
@@ -129,57 +149,118 @@ impl Gpu {
         self.device.features().contains(wgpu::Features::FLOAT32_BLENDABLE)
     }
 
-    /// A storage buffer with this content. An empty one holds one unused element, since bindings may not be empty.
+    /// Refuses what is larger than the largest storage binding.
     ///
     /// # Errors
-    /// [`GpuError::TooMany`] beyond the largest storage binding.
-    pub fn storage<T: bytemuck::Pod>(&self, what: &'static str, items: &[T]) -> Result<wgpu::Buffer, GpuError> {
-        let bytes = std::mem::size_of_val(items) as u64;
+    /// [`GpuError::TooMany`] with both sizes.
+    pub fn check_storage(&self, what: &'static str, bytes: usize) -> Result<(), GpuError> {
         let limit = self.device.limits().max_storage_buffer_binding_size;
-        if bytes > limit {
-            return Err(GpuError::TooMany { what, count: items.len(), bytes, limit });
+        if bytes as u64 > limit {
+            return Err(GpuError::TooMany { what, count: bytes / 4, bytes: bytes as u64, limit });
         }
-        Ok(self.buffer(what, bytemuck::cast_slice(items), size_of::<T>(), wgpu::BufferUsages::STORAGE))
+        Ok(())
     }
 
-    /// A uniform buffer that holds `count` elements, the first of them given by `bytes`.
-    ///
-    /// # Errors
-    /// [`GpuError::TooMany`] where more are given.
-    pub fn uniform_array(
-        &self,
-        what: &'static str,
-        bytes: &[u8],
-        element: usize,
-        count: usize,
-    ) -> Result<wgpu::Buffer, GpuError> {
-        if bytes.len() > element * count {
-            let given = bytes.len() / element;
-            return Err(GpuError::TooMany {
-                what,
-                count: given,
-                bytes: bytes.len() as u64,
-                limit: (element * count) as u64,
-            });
+    /// Texts that stand in for shader files of the program.
+    pub fn shader_edits(&self) -> Arc<ShaderEdits> {
+        self.shader_edits.lock().map_or_else(|poisoned| Arc::clone(&poisoned.into_inner()), |edits| Arc::clone(&edits))
+    }
+
+    /// Replaces them; modules that are compiled from now on use them.
+    pub fn set_shader_edits(&self, edits: Arc<ShaderEdits>) {
+        match self.shader_edits.lock() {
+            Ok(mut slot) => *slot = edits,
+            Err(poisoned) => *poisoned.into_inner() = edits,
         }
-        Ok(self.buffer(what, bytes, element * count, wgpu::BufferUsages::UNIFORM))
     }
 
-    /// A uniform buffer with this content.
-    pub fn uniform<T: bytemuck::Pod>(&self, label: &'static str, value: &T) -> wgpu::Buffer {
-        self.buffer(label, bytemuck::bytes_of(value), size_of::<T>(), wgpu::BufferUsages::UNIFORM)
+    /// The buffer of the last read-back, if it stayed.
+    pub(super) fn take_readback(&self) -> Option<wgpu::Buffer> {
+        self.readback.lock().ok().and_then(|mut kept| kept.take())
     }
 
-    fn buffer(&self, label: &'static str, bytes: &[u8], least: usize, usage: wgpu::BufferUsages) -> wgpu::Buffer {
-        let size = bytes.len().max(least).next_multiple_of(16) as u64;
-        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+    /// Keeps a buffer for the next read-back.
+    pub(super) fn keep_readback(&self, buffer: wgpu::Buffer) {
+        if let Ok(mut kept) = self.readback.lock() {
+            *kept = Some(buffer);
+        }
+    }
+
+    /// What was asked of the device so far.
+    pub fn counters(&self) -> Counters {
+        self.counting.read()
+    }
+
+    /// A buffer of `size` bytes that begins with this content.
+    pub fn buffer(&self, label: &'static str, bytes: &[u8], size: usize, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        let buffer = self.empty_buffer(label, size as u64, usage | wgpu::BufferUsages::COPY_DST);
+        if !bytes.is_empty() {
+            self.write_buffer(&buffer, 0, bytes);
+        }
+        buffer
+    }
+
+    /// A buffer of `size` bytes.
+    pub fn empty_buffer(&self, label: &'static str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        Counting::one(&self.counting.buffers);
+        self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
             size,
-            usage: usage | wgpu::BufferUsages::COPY_DST,
+            usage,
             mapped_at_creation: false,
-        });
-        self.queue.write_buffer(&buffer, 0, bytes);
-        buffer
+        })
+    }
+
+    /// Writes to a buffer, whole words.
+    pub fn write_buffer(&self, buffer: &wgpu::Buffer, offset: u64, bytes: &[u8]) {
+        self.counting.write(bytes.len());
+        self.queue.write_buffer(buffer, offset, bytes);
+    }
+
+    /// Writes to a texture.
+    pub fn write_texture(
+        &self,
+        to: wgpu::TexelCopyTextureInfo<'_>,
+        bytes: &[u8],
+        layout: wgpu::TexelCopyBufferLayout,
+        size: wgpu::Extent3d,
+    ) {
+        self.counting.write(bytes.len());
+        self.queue.write_texture(to, bytes, layout, size);
+    }
+
+    /// A bind group.
+    pub fn bind_group(
+        &self,
+        label: &'static str,
+        layout: &wgpu::BindGroupLayout,
+        entries: &[wgpu::BindGroupEntry<'_>],
+    ) -> wgpu::BindGroup {
+        Counting::one(&self.counting.bind_groups);
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries })
+    }
+
+    /// A render pipeline.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] with the driver's words where it does not fit its shaders.
+    pub fn render_pipeline(
+        &self,
+        descriptor: &wgpu::RenderPipelineDescriptor<'_>,
+    ) -> Result<wgpu::RenderPipeline, GpuError> {
+        Counting::one(&self.counting.pipelines);
+        let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let pipeline = self.device.create_render_pipeline(descriptor);
+        match pollster::block_on(scope.pop()) {
+            Some(error) => Err(GpuError::Driver(error.to_string())),
+            None => Ok(pipeline),
+        }
+    }
+
+    /// A texture.
+    pub fn texture(&self, descriptor: &wgpu::TextureDescriptor<'_>) -> wgpu::Texture {
+        Counting::one(&self.counting.textures);
+        self.device.create_texture(descriptor)
     }
 
     /// A texture that passes draw to, read from, and that can be copied out.
@@ -190,7 +271,7 @@ impl Gpu {
         layers: u32,
         format: wgpu::TextureFormat,
     ) -> wgpu::Texture {
-        self.device.create_texture(&wgpu::TextureDescriptor {
+        self.texture(&wgpu::TextureDescriptor {
             label: Some(label),
             size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: layers },
             mip_level_count: 1,

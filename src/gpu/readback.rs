@@ -2,6 +2,9 @@
 
 use super::{Gpu, GpuError};
 
+/// The largest buffer that stays for the next read-back, in bytes: a 4K picture of 8 bits. Larger ones go at once.
+const MOST_KEPT: u64 = 48 << 20;
+
 /// Reads a two-dimensional texture: tightly packed rows from the top, `bytes_per_pixel` each pixel.
 ///
 /// # Errors
@@ -10,12 +13,10 @@ pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture, bytes_per_pixel: u32) ->
     let size = texture.size();
     let row = size.width * bytes_per_pixel;
     let padded_row = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("readback"),
-        size: u64::from(padded_row) * u64::from(size.height),
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
+    let bytes = u64::from(padded_row) * u64::from(size.height);
+    let former = gpu.take_readback().filter(|buffer| buffer.size() == bytes);
+    let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
+    let buffer = former.unwrap_or_else(|| gpu.empty_buffer("readback", bytes, usage));
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("readback") });
     encoder.copy_texture_to_buffer(
         texture.as_image_copy(),
@@ -28,13 +29,21 @@ pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture, bytes_per_pixel: u32) ->
     gpu.queue.submit([encoder.finish()]);
     buffer.map_async(wgpu::MapMode::Read, .., |_| {});
     gpu.wait()?;
-    let mapped = buffer.get_mapped_range(..).map_err(|error| GpuError::Driver(error.to_string()))?;
-    if row == padded_row {
-        return Ok(mapped.to_vec());
-    }
-    let mut pixels = Vec::with_capacity(row as usize * size.height as usize);
-    for line in mapped.chunks_exact(padded_row as usize) {
-        pixels.extend_from_slice(&line[..row as usize]);
+    let pixels = {
+        let mapped = buffer.get_mapped_range(..).map_err(|error| GpuError::Driver(error.to_string()))?;
+        if row == padded_row {
+            mapped.to_vec()
+        } else {
+            let mut pixels = Vec::with_capacity(row as usize * size.height as usize);
+            for line in mapped.chunks_exact(padded_row as usize) {
+                pixels.extend_from_slice(&line[..row as usize]);
+            }
+            pixels
+        }
+    };
+    buffer.unmap();
+    if bytes <= MOST_KEPT {
+        gpu.keep_readback(buffer);
     }
     Ok(pixels)
 }

@@ -24,14 +24,7 @@ impl PassTimer {
             return None;
         }
         let size = u64::from(MAX_PASSES) * 2 * 8;
-        let buffer = |label, usage| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size,
-                usage,
-                mapped_at_creation: false,
-            })
-        };
+        let buffer = |label, usage| gpu.empty_buffer(label, size, usage);
         Some(PassTimer {
             queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("pass times"),

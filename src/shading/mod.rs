@@ -124,18 +124,13 @@ pub fn material_declaration(shader: &dyn ObjectShader) -> String {
 pub fn upload(gpu: &Gpu, resource: &Resource) -> Result<UploadedResource, GpuError> {
     match (resource.data)() {
         ResourceData::Uniform(bytes) => {
-            let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(resource.declaration),
-                size: bytes.len().next_multiple_of(16) as u64,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            });
-            gpu.queue.write_buffer(&buffer, 0, &bytes);
+            let size = bytes.len().next_multiple_of(16);
+            let buffer = gpu.buffer(resource.declaration, &bytes, size, wgpu::BufferUsages::UNIFORM);
             Ok(UploadedResource::Uniform(buffer))
         }
         ResourceData::Texture(size, bytes) => {
             let extent = wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 };
-            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            let texture = gpu.texture(&wgpu::TextureDescriptor {
                 label: Some(resource.declaration),
                 size: extent,
                 mip_level_count: 1,
@@ -145,7 +140,7 @@ pub fn upload(gpu: &Gpu, resource: &Resource) -> Result<UploadedResource, GpuErr
                 usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
                 view_formats: &[],
             });
-            gpu.queue.write_texture(
+            gpu.write_texture(
                 texture.as_image_copy(),
                 &bytes,
                 wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size[0] * 16), rows_per_image: None },

@@ -34,7 +34,7 @@ impl Source {
         match self {
             Source::Directional(position) => (position.normalize(), f64::INFINITY),
             Source::Point(position) => {
-                let bounds = engine.scene().molecule.bounding_sphere();
+                let bounds = engine.scene().expect("a scene").molecule.bounding_sphere();
                 let center = world.view.view_from_world.transform_point3(bounds.center.as_dvec3());
                 (center + f64::from(bounds.radius) * position - from, 1.0)
             }

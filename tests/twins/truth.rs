@@ -144,8 +144,8 @@ pub struct World {
 impl World {
     /// The engine's scene with these radii of atoms, and its bonds with theirs.
     pub fn new(engine: &Engine, size: [u32; 2], atom_radii: &[f64], bond_radius: f64) -> World {
-        let view = View::new(&engine.camera(size), size);
-        let molecule = &engine.scene().molecule;
+        let view = View::new(&engine.camera(size).expect("a camera"), size);
+        let molecule = &engine.scene().expect("a scene").molecule;
         assert_eq!(molecule.atoms.len(), atom_radii.len(), "a radius for each atom");
         let place = |index: usize| view.view_from_world.transform_point3(molecule.atoms[index].position.as_dvec3());
         let atoms = (0u32..)

@@ -1,0 +1,98 @@
+//! `restyle render --watch`: the picture again after each save, for any image viewer that follows a file.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use super::render::{self, Args, rounded};
+use super::{Failure, answer, inputs, tell};
+use crate::engine::{Engine, Gpu, Part, Reload, Sources};
+
+/// How often an interrupt is looked for while nothing happens. Ours: a key press that takes longer feels lost.
+const PATIENCE: Duration = Duration::from_millis(100);
+
+/// Draws until the process is interrupted. A style or scene that does not load is told and waited for.
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&interrupted);
+    // A picture that is being written is finished first. Without a handler an interrupt ends the process as ever.
+    let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
+
+    let (style, scene) = (inputs::find_style(args.style())?, inputs::find_scene(args.scene())?);
+    let options = args.load_options();
+    let sources = Sources {
+        style_file: style.file().map(Path::to_owned),
+        style: Box::new(move || inputs::read_style(&style)),
+        scene_file: scene.file().map(Path::to_owned),
+        scene: Box::new(move || inputs::read_scene(&scene, options)),
+    };
+    let mut engine = Engine::live(Arc::new(Gpu::open()?), sources);
+    if engine.watched_files().is_empty() {
+        return Err(Failure::usage(
+            "--watch: what is shipped never changes; start from a copy: restyle copy education mine.json",
+        ));
+    }
+    let mut told = Vec::new();
+    while !interrupted.load(Ordering::Relaxed) {
+        let mut noticed: Option<Instant> = None;
+        for reload in engine.wait(PATIENCE) {
+            match reload {
+                Reload::Taken(_, times) => {
+                    noticed = Some(noticed.map_or(times.noticed, |earlier| earlier.min(times.noticed)));
+                }
+                Reload::Mended(part) => {
+                    tell(format!("{}: fine again; the picture is as it was", part_name(part, args)));
+                }
+                Reload::Refused(part, refusal) => {
+                    let kept = if engine.style().is_some() { "; the picture stays as it is" } else { "" };
+                    tell(format!("{refusal}\n{}: waiting for it to be mended{kept}", part_name(part, args)));
+                }
+            }
+        }
+        if let Some(noticed) = noticed {
+            tell_warnings(&engine, args, &mut told);
+            match draw(&mut engine, args, noticed) {
+                Err(failure) if failure.code == 1 => tell(failure.message),
+                other => other?,
+            }
+        }
+    }
+    Ok(())
+}
+
+fn part_name(part: Part, args: &Args) -> &str {
+    match part {
+        Part::Style => args.style(),
+        Part::Scene => args.scene(),
+        Part::Shaders => "shaders",
+    }
+}
+
+/// Tells warnings of what is drawn now that were not told before.
+fn tell_warnings(engine: &Engine, args: &Args, told: &mut Vec<String>) {
+    let (Some(style), Some(scene)) = (engine.style(), engine.scene()) else { return };
+    let mut warnings: Vec<String> = style.warnings.iter().map(ToString::to_string).collect();
+    warnings.extend(inputs::scene_warnings(scene, args.scene()));
+    warnings.extend(engine.limits_exceeded().iter().map(|limit| format!("{}: warning: {limit}", args.style())));
+    warnings.iter().filter(|warning| !told.contains(warning)).for_each(tell);
+    *told = warnings;
+}
+
+/// Draws and writes the picture and what else is asked for; the change was noticed at `noticed`.
+fn draw(engine: &mut Engine, args: &Args, noticed: Instant) -> Result<(), Failure> {
+    let bases: Vec<_> =
+        engine.style().map_or(&[][..], |style| &style.files[..]).iter().map(|file| ("style", file.as_path())).collect();
+    inputs::check_outputs(args.outputs(), &bases)?;
+    let picture = render::draw(engine, args)?;
+    render::write_aovs(engine, args)?;
+    let total_ms = noticed.elapsed().as_secs_f64() * 1e3;
+    if args.json() {
+        let mut line = render::describe(engine, args, &picture)?;
+        line.insert("total_ms".to_owned(), rounded(total_ms).into());
+        return answer(serde_json::Value::Object(line));
+    }
+    let written: Vec<String> = args.outputs().map(|output| output.display().to_string()).collect();
+    tell(format!("{}: drawn in {:.0} ms, the frame {:.0} ms", written.join(", "), total_ms, picture.frame_ms));
+    Ok(())
+}

@@ -1,0 +1,186 @@
+//! What a style makes of a scene, on the device: objects and materials, each written only where it changed.
+
+use std::collections::BTreeMap;
+
+use super::objects::{self, DrawList, Material, ObjectBuffers};
+use super::occlusion::Reach;
+use super::shade::{ShadeKey, ShaderNeeds};
+use super::visibility::DrawnKinds;
+use crate::gpu::{Gpu, GpuError, KeptBuffer};
+use crate::shading::{MAX_MATERIALS, SHADERS};
+
+/// Materials of a style: what all share, and each shader's parameter sets.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Materials {
+    /// One for each material.
+    pub common: Vec<Material>,
+    /// Bytes of the parameter sets, by the shader's place in the registry.
+    pub params: BTreeMap<usize, Vec<u8>>,
+    /// Features that the materials of each shader use, one bit each.
+    pub features: BTreeMap<usize, u32>,
+}
+
+impl Materials {
+    fn has_hulls(&self) -> bool {
+        let Reach { px, world } = self.reach();
+        px + world > 0.0
+    }
+
+    /// The widest hull outline.
+    fn reach(&self) -> Reach {
+        self.common.iter().fold(Reach::default(), |reach, material| Reach {
+            px: reach.px.max(material.hull_px),
+            world: reach.world.max(material.hull_world),
+        })
+    }
+
+    /// Refuses more materials than a frame holds.
+    fn check(&self) -> Result<(), GpuError> {
+        let count = self.common.len();
+        if count > MAX_MATERIALS {
+            let bytes = |count: usize| (count * size_of::<Material>()) as u64;
+            return Err(GpuError::TooMany {
+                what: "materials",
+                count,
+                bytes: bytes(count),
+                limit: bytes(MAX_MATERIALS),
+            });
+        }
+        Ok(())
+    }
+}
+
+/// What pipelines need to know of the objects.
+#[derive(Debug, Clone, Copy, Default)]
+struct ObjectNeeds {
+    kinds: DrawnKinds,
+    /// The one material of all atoms, where there is only one.
+    atom_material: Option<u32>,
+    /// The same of connectors.
+    connector_material: Option<u32>,
+}
+
+impl ObjectNeeds {
+    fn new(list: &DrawList) -> ObjectNeeds {
+        fn common(mut materials: impl Iterator<Item = u32>) -> Option<u32> {
+            let first = materials.next()?;
+            materials.all(|material| material == first).then_some(first)
+        }
+        ObjectNeeds {
+            kinds: DrawnKinds { atoms: !list.atoms.is_empty(), connectors: !list.connectors.is_empty() },
+            atom_material: common(list.atoms.iter().map(|atom| atom.material)),
+            connector_material: common(list.connectors.iter().map(|connector| connector.material)),
+        }
+    }
+}
+
+/// What the pipelines of a frame need to know of objects and materials.
+#[derive(Debug, Clone)]
+pub struct Needs {
+    /// Which kinds of objects there are.
+    pub kinds: DrawnKinds,
+    /// What shading reads; lights and output are filled in for each frame.
+    pub key: ShadeKey,
+}
+
+impl Needs {
+    fn new(objects: &ObjectNeeds, materials: &Materials) -> Needs {
+        let shaders = materials.params.keys().map(|&shader| ShaderNeeds {
+            shader,
+            features: materials.features.get(&shader).copied().unwrap_or(0),
+            only_material: {
+                let mut using = (0..).zip(&materials.common).filter(|(_, material)| material.shader as usize == shader);
+                match (using.next(), using.next()) {
+                    (Some((material, _)), None) => Some(material),
+                    _ => None,
+                }
+            },
+        });
+        let key = ShadeKey {
+            shaders: shaders.collect(),
+            atoms: objects.kinds.atoms,
+            connectors: objects.kinds.connectors,
+            atom_material: objects.atom_material,
+            connector_material: objects.connector_material,
+            hulls: materials.has_hulls(),
+            lights: 0,
+            point_lights: false,
+            shadows: false,
+            soft_taps: 0,
+            orthographic: false,
+            encode: false,
+        };
+        Needs { kinds: objects.kinds, key }
+    }
+}
+
+/// Objects and materials on the device.
+pub struct Contents {
+    /// The objects.
+    pub objects: ObjectBuffers,
+    object_needs: ObjectNeeds,
+    materials: Materials,
+    common: KeptBuffer,
+    /// The parameter sets of each shader, by its place in the registry.
+    pub params: BTreeMap<usize, KeptBuffer>,
+}
+
+impl Default for Contents {
+    fn default() -> Contents {
+        Contents {
+            objects: ObjectBuffers::default(),
+            object_needs: ObjectNeeds::default(),
+            materials: Materials::default(),
+            common: KeptBuffer::uniform("materials"),
+            params: BTreeMap::new(),
+        }
+    }
+}
+
+impl Contents {
+    /// What pipelines would need, were these put in; `list` is none where the objects stay.
+    ///
+    /// # Errors
+    /// [`GpuError::TooMany`] where the device cannot hold them.
+    pub fn needs_of(&self, gpu: &Gpu, list: Option<&DrawList>, materials: &Materials) -> Result<Needs, GpuError> {
+        materials.check()?;
+        if let Some(list) = list {
+            objects::check(gpu, list)?;
+        }
+        Ok(Needs::new(&list.map_or(self.object_needs, ObjectNeeds::new), materials))
+    }
+
+    /// Replaces materials and, where `list` is given, objects. On an error all stays as it was.
+    ///
+    /// # Errors
+    /// As [`Contents::needs_of`].
+    pub fn set(&mut self, gpu: &Gpu, list: Option<&DrawList>, materials: Materials) -> Result<(), GpuError> {
+        self.needs_of(gpu, list, &materials)?;
+        if let Some(list) = list {
+            self.objects.set(gpu, list)?;
+            self.object_needs = ObjectNeeds::new(list);
+        }
+        self.common.set(gpu, bytemuck::cast_slice(&materials.common), MAX_MATERIALS * size_of::<Material>())?;
+        for (&shader, bytes) in &materials.params {
+            let buffer = self.params.entry(shader).or_insert_with(|| KeptBuffer::uniform("parameters"));
+            buffer.set(gpu, bytes, MAX_MATERIALS * SHADERS[shader].material_info().size)?;
+        }
+        self.materials = materials;
+        Ok(())
+    }
+
+    /// What the pipelines of its frames need.
+    pub fn needs(&self) -> Needs {
+        Needs::new(&self.object_needs, &self.materials)
+    }
+
+    /// What all shaders' materials share; none before the first content.
+    pub fn common(&self) -> Option<wgpu::Buffer> {
+        self.common.get()
+    }
+
+    /// What outlines add to the objects.
+    pub fn reach(&self) -> Reach {
+        self.materials.reach()
+    }
+}
