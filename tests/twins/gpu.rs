@@ -12,7 +12,7 @@ use restyle::gpu::Gpu;
 use restyle::scene::{AovImage, Image, Scene};
 
 /// The adapter's device, opened once; `None` where there is none and none is required.
-fn device() -> Option<Arc<Gpu>> {
+pub fn device() -> Option<Arc<Gpu>> {
     static GPU: OnceLock<Option<Arc<Gpu>>> = OnceLock::new();
     static SKIPPED: AtomicU32 = AtomicU32::new(0);
     let gpu = GPU.get_or_init(|| match Gpu::open() {
@@ -35,14 +35,24 @@ fn device() -> Option<Arc<Gpu>> {
 
 /// An engine for a molecule as XYZ lines (`C 0 0 0`) and a style as JSON; `None` without an adapter.
 pub fn engine(atoms: &[&str], style: &str) -> Option<Engine> {
-    let gpu = device()?;
+    Some(engine_on(device()?, atoms, style))
+}
+
+/// The same on a device of its own, which no other test counts on.
+#[allow(dead_code, reason = "only what counts needs it")]
+pub fn lone_engine(atoms: &[&str], style: &str) -> Option<Engine> {
+    device()?;
+    Some(engine_on(Arc::new(Gpu::open().expect("an adapter that opened before")), atoms, style))
+}
+
+fn engine_on(gpu: Arc<Gpu>, atoms: &[&str], style: &str) -> Engine {
     let xyz = format!("{}\n\n{}\n", atoms.len(), atoms.join("\n"));
     let scene = Scene::from_bytes("test.xyz", xyz.as_bytes()).expect("a molecule");
     let source = Source::new("test.json", style);
     let catalog = Catalog { shaders: &engine::catalog(), kinds: engine::DRAWN_KINDS };
     let style = config::load(&source, &catalog).unwrap_or_else(|mistakes| panic!("{mistakes}"));
     assert!(style.warnings.is_empty(), "{:?}", style.warnings);
-    Some(Engine::new(gpu, scene, style))
+    Engine::new(gpu, scene, style)
 }
 
 /// A request of one opaque picture of 8 bits.

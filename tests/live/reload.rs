@@ -1,0 +1,247 @@
+//! Files as editors write them: in place, by rename, truncated first, gone and back.
+
+use std::fs::{self, File};
+use std::io::Write;
+use std::time::Duration;
+
+use restyle::engine::{Counters, Part, Refusal, Reload};
+
+use super::rig::{Live, ground};
+
+const MOLECULE: &str = "2\n\nC 0 0 0\nO 1.2 0 0\n";
+const RED: [u8; 3] = [200, 10, 10];
+const BLUE: [u8; 3] = [10, 10, 200];
+const GREEN: [u8; 3] = [10, 200, 10];
+
+/// A live engine that has drawn a red ground.
+fn red(name: &str) -> Option<Live> {
+    let mut live = Live::new(name, &[("s.json", &ground(RED)), ("m.xyz", MOLECULE)])?;
+    assert_eq!(live.taken(), Part::Style);
+    assert_eq!(live.ground(), RED);
+    Some(live)
+}
+
+#[test]
+fn a_save_in_place_is_taken() {
+    let Some(mut live) = red("in-place") else { return };
+    live.write("s.json", &ground(BLUE));
+    assert_eq!(live.taken(), Part::Style);
+    assert_eq!(live.ground(), BLUE);
+    live.silent();
+}
+
+#[test]
+fn a_save_by_rename_is_taken_each_time() {
+    let Some(mut live) = red("rename") else { return };
+    for color in [BLUE, GREEN, RED] {
+        live.write("s.json.new", &ground(color));
+        fs::rename(live.path("s.json.new"), live.path("s.json")).unwrap();
+        assert_eq!(live.taken(), Part::Style);
+        assert_eq!(live.ground(), color);
+    }
+}
+
+#[test]
+fn a_save_that_keeps_a_backup_is_taken() {
+    let Some(mut live) = red("backup") else { return };
+    fs::rename(live.path("s.json"), live.path("s.json~")).unwrap();
+    live.write("s.json", &ground(BLUE));
+    assert_eq!(live.taken(), Part::Style);
+    assert_eq!(live.ground(), BLUE);
+}
+
+#[test]
+fn a_slow_save_shows_no_half_of_itself() {
+    let Some(mut live) = red("slow") else { return };
+    let text = ground(BLUE);
+    let mut file = File::create(live.path("s.json")).unwrap();
+    for piece in text.as_bytes().chunks(10) {
+        file.write_all(piece).unwrap();
+        let reloads = live.engine.wait(Duration::from_millis(30));
+        assert!(reloads.is_empty() || piece.ends_with(b"}"), "half a file is no mistake yet: {reloads:?}");
+        if let [Reload::Taken(..)] = reloads[..] {
+            assert_eq!(live.ground(), BLUE);
+            return;
+        }
+        assert_eq!(live.ground(), RED);
+    }
+    drop(file);
+    assert_eq!(live.taken(), Part::Style);
+    assert_eq!(live.ground(), BLUE);
+}
+
+#[test]
+fn a_bad_save_leaves_the_picture_and_is_told_once() {
+    let Some(mut live) = red("bad") else { return };
+    live.write("s.json", "{ \"camera\": { \"fov\": 0 } }");
+    let (part, refusal) = live.refused();
+    assert!(part == Part::Style && refusal.to_string().contains("\"fov\" is 0"), "{refusal}");
+    assert_eq!(live.ground(), RED);
+    // The same again, and a touch: nothing new to say.
+    live.write("s.json", "{ \"camera\": { \"fov\": 0 } }");
+    live.silent();
+    live.write("s.json", "{ \"camera\": { \"fov\": -1 } }");
+    assert!(live.refused().1.to_string().contains("\"fov\" is -1"));
+    // As it was: nothing to draw, but the mistake is over.
+    live.write("s.json", &ground(RED));
+    assert!(matches!(live.next(), Reload::Mended(Part::Style)));
+    live.write("s.json", &ground(BLUE));
+    assert_eq!(live.taken(), Part::Style);
+}
+
+#[test]
+fn a_file_that_vanishes_leaves_the_picture_and_may_come_back() {
+    let Some(mut live) = red("vanish") else { return };
+    fs::remove_file(live.path("s.json")).unwrap();
+    assert!(live.refused().1.to_string().contains("no such file"));
+    assert_eq!(live.ground(), RED);
+    live.write("s.json", &ground(GREEN));
+    assert_eq!(live.taken(), Part::Style);
+    assert_eq!(live.ground(), GREEN);
+}
+
+#[test]
+fn a_first_load_that_fails_can_be_mended() {
+    for (name, first) in [("first-bad", Some("{")), ("first-missing", None)] {
+        let files: Vec<(&str, &str)> =
+            first.map(|text| ("s.json", text)).into_iter().chain([("m.xyz", MOLECULE)]).collect();
+        let Some(mut live) = Live::new(name, &files) else { return };
+        assert_eq!(live.refused().0, Part::Style);
+        assert!(live.engine.style().is_none());
+        live.write("s.json", &ground(BLUE));
+        assert_eq!(live.taken(), Part::Style);
+        assert_eq!(live.ground(), BLUE);
+    }
+}
+
+#[test]
+fn the_scene_is_followed_like_the_style() {
+    let Some(mut live) = red("scene") else { return };
+    assert_eq!(live.engine.counts().spheres, 2);
+    live.write("m.xyz", "1\n\nC 0 0 0\n");
+    assert_eq!(live.taken(), Part::Scene);
+    assert_eq!(live.engine.counts().spheres, 1);
+    live.write("m.xyz", "");
+    assert!(matches!(live.refused(), (Part::Scene, Refusal::Scene(_))));
+    live.draw();
+    assert_eq!(live.engine.counts().spheres, 1);
+    live.write("m.xyz", "3\n\nC 0 0 0\nC 3 0 0\nC 6 0 0\n");
+    assert_eq!(live.taken(), Part::Scene);
+    assert_eq!(live.engine.counts().spheres, 3);
+}
+
+#[test]
+fn every_base_is_followed() {
+    let Some(mut live) = red("bases") else { return };
+    live.write("base.json", &ground(GREEN));
+    live.write("middle.json", "{ \"extends\": \"base.json\" }");
+    live.write("s.json", "{ \"extends\": \"middle.json\" }");
+    assert_eq!(live.taken(), Part::Style);
+    assert_eq!(live.ground(), GREEN);
+    live.write("base.json", &ground(BLUE));
+    assert_eq!(live.taken(), Part::Style);
+    assert_eq!(live.ground(), BLUE);
+    live.write("middle.json", &ground(RED));
+    assert_eq!(live.taken(), Part::Style);
+    assert_eq!(live.ground(), RED);
+    // Nothing asks for it any more.
+    live.write("base.json", &ground(GREEN));
+    live.silent();
+}
+
+#[test]
+fn a_base_that_is_missing_may_come() {
+    let Some(mut live) = red("missing-base") else { return };
+    live.write("s.json", "{ \"extends\": \"later.json\" }");
+    assert!(live.refused().1.to_string().contains("later.json"));
+    live.write("later.json", &ground(BLUE));
+    assert_eq!(live.taken(), Part::Style);
+    assert_eq!(live.ground(), BLUE);
+}
+
+#[cfg(unix)]
+#[test]
+fn links_are_followed_to_what_they_mean() {
+    let Some(mut live) = red("links") else { return };
+    fs::create_dir(live.path("far")).unwrap();
+    live.write("far/real.json", &ground(BLUE));
+    fs::remove_file(live.path("s.json")).unwrap();
+    std::os::unix::fs::symlink("far/real.json", live.path("s.json")).unwrap();
+    assert_eq!(live.taken(), Part::Style);
+    assert_eq!(live.ground(), BLUE);
+    live.write("far/real.json", &ground(GREEN));
+    assert_eq!(live.taken(), Part::Style);
+    assert_eq!(live.ground(), GREEN);
+    // A circle of links, then an honest file.
+    fs::remove_file(live.path("s.json")).unwrap();
+    std::os::unix::fs::symlink("s.json", live.path("s.json")).unwrap();
+    assert_eq!(live.refused().0, Part::Style);
+    fs::remove_file(live.path("s.json")).unwrap();
+    live.write("s.json", &ground(RED));
+    assert_eq!(live.taken(), Part::Style);
+}
+
+#[test]
+fn a_folder_in_place_of_the_style_is_refused() {
+    let Some(mut live) = red("folder") else { return };
+    fs::remove_file(live.path("s.json")).unwrap();
+    fs::create_dir(live.path("s.json")).unwrap();
+    assert!(live.refused().1.to_string().contains("folder"));
+    fs::remove_dir(live.path("s.json")).unwrap();
+    live.write("s.json", &ground(BLUE));
+    assert_eq!(live.taken(), Part::Style);
+}
+
+#[test]
+fn a_folder_that_is_replaced_is_followed_again() {
+    let Some(mut live) = red("replaced") else { return };
+    let aside = live.folder.with_extension("aside");
+    fs::rename(&live.folder, &aside).unwrap();
+    fs::create_dir(&live.folder).unwrap();
+    live.write("m.xyz", MOLECULE);
+    live.write("s.json", &ground(BLUE));
+    assert_eq!(live.taken(), Part::Style);
+    live.write("s.json", &ground(GREEN));
+    assert_eq!(live.taken(), Part::Style);
+    assert_eq!(live.ground(), GREEN);
+    fs::remove_dir_all(aside).unwrap();
+}
+
+#[test]
+fn what_the_device_cannot_hold_is_refused_whole() {
+    let Some(mut live) = red("too-many") else { return };
+    let atoms: String = (0..600).map(|i| format!("C {} {} 0\n", i % 30 * 3, i / 30 * 3)).collect();
+    live.write("m.xyz", &format!("600\n\n{atoms}"));
+    assert_eq!(live.taken(), Part::Scene);
+    // 600 materials in use; a frame holds 512.
+    let names = |i: usize| format!("\"atom[name=N{i}]\": \"n{i}\"");
+    let scene: String = (0..600).map(|i| format!("N{i} {} {} 0\n", i % 30 * 3, i / 30 * 3)).collect();
+    live.write("m.xyz", &format!("600\n\n{scene}"));
+    assert_eq!(live.taken(), Part::Scene);
+    let shaders: Vec<String> = (0..600).map(|i| format!("{{ \"name\": \"n{i}\", \"shader\": \"unlit\" }}")).collect();
+    let mapping: Vec<String> = (0..600).map(names).collect();
+    let many = format!("{{ \"shaders\": [{}], \"mapping\": {{ {} }} }}", shaders.join(","), mapping.join(","));
+    live.write("s.json", &many);
+    let (part, refusal) = live.refused();
+    assert!(part == Part::Style && matches!(refusal, Refusal::Device(_)), "{refusal}");
+    assert_eq!(live.ground(), RED);
+    assert_eq!(live.engine.counts().spheres, 600);
+}
+
+#[test]
+fn a_property_saved_to_a_file_costs_one_write_as_well() {
+    let toon = |steps: u32| {
+        format!(
+            "{{ \"mapping\": {{ \"*\": \"t\" }}, \"shaders\": [{{ \"name\": \"t\", \"shader\": \"toon\", \
+             \"properties\": {{ \"steps\": {steps} }} }}] }}"
+        )
+    };
+    let Some(mut live) = Live::alone("one-write", &[("s.json", &toon(3)), ("m.xyz", MOLECULE)]) else { return };
+    live.taken();
+    live.draw();
+    let before = live.engine.counters();
+    live.write("s.json", &toon(5));
+    live.taken();
+    let cost = live.engine.counters() - before;
+    assert_eq!(cost, Counters { writes: 1, bytes_written: 4, ..Counters::default() });
+}
