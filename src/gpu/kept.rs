@@ -110,7 +110,14 @@ impl Bound {
 
 /// A bind group that is made anew only where it binds something else.
 #[derive(Default)]
-pub struct KeptBindGroup(Option<(wgpu::BindGroupLayout, Vec<(u32, Bound)>, wgpu::BindGroup)>);
+pub struct KeptBindGroup(Option<Grouped>);
+
+/// A bind group with what it was made of.
+struct Grouped {
+    layout: wgpu::BindGroupLayout,
+    bound: Vec<(u32, Bound)>,
+    group: wgpu::BindGroup,
+}
 
 impl KeptBindGroup {
     /// The group of these bindings.
@@ -121,18 +128,15 @@ impl KeptBindGroup {
         layout: &wgpu::BindGroupLayout,
         bound: Vec<(u32, Bound)>,
     ) -> wgpu::BindGroup {
-        if let Some((of_layout, of_bound, group)) = &self.0
-            && of_layout == layout
-            && *of_bound == bound
-        {
-            return group.clone();
+        if let Some(kept) = self.0.as_ref().filter(|kept| kept.layout == *layout && kept.bound == bound) {
+            return kept.group.clone();
         }
         let entries: Vec<wgpu::BindGroupEntry<'_>> = bound
             .iter()
             .map(|(binding, bound)| wgpu::BindGroupEntry { binding: *binding, resource: bound.resource() })
             .collect();
         let group = gpu.bind_group(label, layout, &entries);
-        self.0 = Some((layout.clone(), bound, group.clone()));
+        self.0 = Some(Grouped { layout: layout.clone(), bound, group: group.clone() });
         group
     }
 }
