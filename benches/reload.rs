@@ -80,6 +80,7 @@ fn sources(style: &Path, scene: Option<PathBuf>) -> Sources {
             }
         }),
         scene_file: file,
+        shader_folder: None,
     }
 }
 
@@ -127,9 +128,10 @@ fn measure(
         }
         let saved = Instant::now();
         let Some(stages) = taken(&mut engine) else { return println!("{name}: a save was never taken") };
-        let Ok(frame) = draw(&mut engine) else { return println!("{name}: nothing was drawn") };
+        let Ok(_) = draw(&mut engine) else { return println!("{name}: nothing was drawn") };
         let end = Instant::now();
         times.add("save to frame done", end - saved.min(stages.started));
+        times.add("of it, all but the draw", stages.uploaded - saved.min(stages.started));
         times.add("the save itself", saved - start);
         times.add("event", stages.noticed.saturating_duration_since(start));
         times.add("debounce", stages.started - stages.noticed);
@@ -145,7 +147,6 @@ fn measure(
         {
             times.add("apart: read back, encode and write the PNG", written.elapsed());
         }
-        let _ = frame;
         if let Ok(ms) = draw(&mut engine) {
             times.add("beside it: the bare frame", Duration::from_secs_f64(ms * 1e-3));
         }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use super::render::{self, Args, rounded};
 use super::{Failure, answer, inputs, tell};
-use crate::engine::{Engine, Gpu, Part, Reload, Sources};
+use crate::engine::{Engine, Gpu, Part, Reload, Sources, source_tree_shaders};
 
 /// How often an interrupt is looked for while nothing happens. Ours: a key press that takes longer feels lost.
 const PATIENCE: Duration = Duration::from_millis(100);
@@ -26,6 +26,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         style: Box::new(move || inputs::read_style(&style)),
         scene_file: scene.file().map(Path::to_owned),
         scene: Box::new(move || inputs::read_scene(&scene, options)),
+        shader_folder: source_tree_shaders(),
     };
     let mut engine = Engine::live(Arc::new(Gpu::open()?), sources);
     if engine.watched_files().is_empty() {

@@ -22,6 +22,8 @@ pub struct Sources {
     pub scene: Box<dyn Fn() -> Result<Scene, SceneError> + Send>,
     /// The scene's file, if it is one.
     pub scene_file: Option<PathBuf>,
+    /// Shaders that stand in for those of the program, such as [`source_tree_shaders`].
+    pub shader_folder: Option<PathBuf>,
 }
 
 /// What files hold that can change by itself.
@@ -91,7 +93,6 @@ pub(super) struct Live {
     /// What has loaded before the other one did.
     style: Option<Arc<Style>>,
     scene: Option<Arc<Scene>>,
-    shader_folder: Option<PathBuf>,
     has_loaded: bool,
 }
 
@@ -103,14 +104,13 @@ impl Live {
             parts: parts.map(|part| Followed { part, pending: Pending::default(), told: None }),
             style: None,
             scene: None,
-            shader_folder: shader_folder(),
             has_loaded: false,
             sources,
         };
         // Watched before anything is read, so that no change falls between.
         live.watch.set(Part::Scene, live.sources.scene_file.clone());
         live.watch.set(Part::Style, live.sources.style_file.clone());
-        if let Some(folder) = &live.shader_folder {
+        if let Some(folder) = &live.sources.shader_folder {
             live.watch.set(Part::Shaders, shader_files(folder));
         }
         live
@@ -256,7 +256,7 @@ impl Engine {
     }
 
     fn reload_shaders(&mut self, live: &mut Live) -> Result<Option<(Instant, Instant)>, Refusal> {
-        let Some(folder) = &live.shader_folder else { return Ok(None) };
+        let Some(folder) = &live.sources.shader_folder else { return Ok(None) };
         let files = shader_files(folder);
         let edits: ShaderEdits = files.iter().filter_map(|file| text_of(folder, file)).collect();
         live.watch.set(Part::Shaders, files);
@@ -277,7 +277,7 @@ impl Engine {
 }
 
 /// The shaders of the source tree that this program was built in, where it still runs in it.
-fn shader_folder() -> Option<PathBuf> {
+pub fn source_tree_shaders() -> Option<PathBuf> {
     let tree = Path::new(env!("CARGO_MANIFEST_DIR"));
     let program = std::env::current_exe().ok()?.canonicalize().ok()?;
     let folder = tree.join("shaders");

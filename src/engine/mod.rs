@@ -23,7 +23,7 @@ use live::Live;
 
 pub use crate::frame::MAX_SAMPLES;
 pub use crate::gpu::{Counters, Gpu, GpuError};
-pub use live::{Part, Refusal, Reload, ReloadTimes, Sources};
+pub use live::{Part, Refusal, Reload, ReloadTimes, Sources, source_tree_shaders};
 
 /// Effects and shaders of the contract that this version names but does not draw.
 const NOT_DRAWN: [(&str, Role); 4] = [

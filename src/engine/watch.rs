@@ -151,8 +151,12 @@ impl<G: Copy + Ord> Watch<G> {
             let seen = look(file);
             if seen != *known {
                 *known = seen;
-                let groups = self.groups.iter().filter(|(_, files)| files.contains(file));
-                touched.extend(groups.map(|(&group, _)| (group, Touch::Written, now)));
+                // What an event has told already is no news, and may be known to be whole.
+                let groups = self.groups.iter().filter(|(group, files)| {
+                    files.contains(file) && !touched.iter().any(|(touched, _, _)| touched == *group)
+                });
+                let seen: Vec<_> = groups.map(|(&group, _)| (group, Touch::Written, now)).collect();
+                touched.extend(seen);
             }
         }
         self.find_names();

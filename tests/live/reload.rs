@@ -245,3 +245,44 @@ fn a_property_saved_to_a_file_costs_one_write_as_well() {
     let cost = live.engine.counters() - before;
     assert_eq!(cost, Counters { writes: 1, bytes_written: 4, ..Counters::default() });
 }
+
+/// Copies the project's shaders into the folder.
+fn copy_shaders(live: &Live) {
+    let from = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
+    for below in ["lib", "objects"] {
+        fs::create_dir_all(live.path("shaders").join(below)).unwrap();
+        for entry in fs::read_dir(from.join(below)).unwrap() {
+            let name = entry.unwrap().file_name();
+            fs::copy(from.join(below).join(&name), live.path("shaders").join(below).join(&name)).unwrap();
+        }
+    }
+}
+
+#[test]
+fn shaders_of_a_source_tree_are_followed() {
+    let style = "{ \"mapping\": { \"*\": \"unlit\" }, \"shaders\": [{ \"name\": \"unlit\", \"shader\": \"unlit\", \
+                 \"properties\": { \"base_color\": \"lime\" } }], \"geometry\": { \"scale\": 1 } }";
+    let Some(mut live) = Live::alone("shaders", &[("m.xyz", "1\n\nC 0 0 0\n")]) else { return };
+    copy_shaders(&live);
+    live.write("s.json", style);
+    assert_eq!(live.taken(), Part::Style);
+    let middle = |live: &mut Live| {
+        let image = live.engine.still(&super::gpu::request([9, 9], 1)).unwrap();
+        let [r, g, b, _] = image.pixel(4, 4).map(|value| (value * 255.0).round() as u8);
+        [r, g, b]
+    };
+    assert_eq!(middle(&mut live), [0, 255, 0]);
+    let good = fs::read_to_string(live.path("shaders/objects/unlit.wgsl")).unwrap();
+    assert!(good.contains("return s.base_color;"), "{good}");
+    live.write("shaders/objects/unlit.wgsl", &good.replace("return s.base_color;", "return s.base_color.yxz;"));
+    assert_eq!(live.taken(), Part::Shaders);
+    assert_eq!(middle(&mut live), [255, 0, 0]);
+    // A mistake leaves the picture, and is said with its file and line.
+    live.write("shaders/objects/unlit.wgsl", &good.replace("return s.base_color;", "return s.base_colour;"));
+    let (part, refusal) = live.refused();
+    assert!(part == Part::Shaders && refusal.to_string().starts_with("shaders/objects/unlit.wgsl:"), "{refusal}");
+    assert_eq!(middle(&mut live), [255, 0, 0]);
+    live.write("shaders/objects/unlit.wgsl", &good);
+    assert_eq!(live.taken(), Part::Shaders);
+    assert_eq!(middle(&mut live), [0, 255, 0]);
+}

@@ -51,6 +51,7 @@ impl Live {
             style: Box::new(move || load_style(&style)),
             scene_file: Some(scene.clone()),
             scene: Box::new(move || Scene::load_with(&scene, &LoadOptions::default())),
+            shader_folder: Some(folder.join("shaders")),
         };
         Live { engine: Engine::live(gpu, sources), folder }
     }
