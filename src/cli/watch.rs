@@ -20,6 +20,11 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
 
     let (style, scene) = (inputs::find_style(args.style())?, inputs::find_scene(args.scene())?);
+    if style.file().or(scene.file()).is_none() {
+        return Err(Failure::usage(
+            "--watch: what is shipped never changes; start from a copy: restyle copy education mine.json",
+        ));
+    }
     let options = args.load_options();
     let sources = Sources {
         style_file: style.file().map(Path::to_owned),
@@ -29,11 +34,6 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         shader_folder: source_tree_shaders(),
     };
     let mut engine = Engine::live(Arc::new(Gpu::open()?), sources);
-    if engine.watched_files().is_empty() {
-        return Err(Failure::usage(
-            "--watch: what is shipped never changes; start from a copy: restyle copy education mine.json",
-        ));
-    }
     let mut told = Vec::new();
     while !interrupted.load(Ordering::Relaxed) {
         let mut noticed: Option<Instant> = None;

@@ -170,11 +170,6 @@ impl Engine {
         }
     }
 
-    /// The files whose changes are followed.
-    pub fn watched_files(&self) -> Vec<PathBuf> {
-        self.live.as_ref().map_or_else(Vec::new, |live| live.watch.files())
-    }
-
     /// Reads one part. What is wrong is told where `tell`, else looked at again after a while.
     fn reload(&mut self, live: &mut Live, index: usize, tell: bool, reloads: &mut Vec<Reload>) {
         let part = live.parts[index].part;

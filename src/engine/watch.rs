@@ -70,11 +70,6 @@ impl<G: Copy + Ord> Watch<G> {
         self.find_names();
     }
 
-    /// All files.
-    pub fn files(&self) -> Vec<PathBuf> {
-        self.groups.values().flatten().cloned().collect()
-    }
-
     /// Finds the names to listen for anew: links may lead elsewhere by now.
     fn find_names(&mut self) {
         self.names.clear();

@@ -10,3 +10,4 @@ mod extremes;
 mod pictures;
 mod rig;
 mod shipped;
+mod watch;
