@@ -5,33 +5,21 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 
 use super::palette::AtomColors;
-use crate::config::{AtomRadius, Attribute, BaseColor, Geometry, ObjectKind, Selector, Style, Value};
+use crate::config::{AtomRadius, Attribute, BaseColor, ObjectKind, Style, Value};
 use crate::frame::Materials;
 use crate::frame::objects::{self, Connector, DrawList, Material, pack_linear};
 use crate::providers::{Lengths, ObjectAttributes, ShaderProvider};
 use crate::scene::{Atom, Bond, Molecule};
 use crate::shading::{self, MaterialContext, SHADERS};
 
-/// Whatever of a style decides which objects are drawn, how large, and in which colours of their own. Styles that are
-/// equal in it draw the same objects, and differ in materials at the most.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ObjectKey {
-    rules: Vec<(Selector, Option<usize>)>,
-    basic: usize,
-    geometry: Geometry,
-    schemes: Vec<BaseColor>,
-}
-
-impl ObjectKey {
-    /// The key of a style.
-    pub fn new(style: &Style) -> ObjectKey {
-        ObjectKey {
-            rules: style.mapping.iter().map(|rule| (rule.selector.clone(), rule.target)).collect(),
-            basic: style.basic,
-            geometry: style.geometry.clone(),
-            schemes: style.shaders.iter().map(own_scheme).collect(),
-        }
-    }
+/// Whether two styles draw the same objects of a scene, as large and in the same colours of their own, so that they differ
+/// in materials at the most.
+pub fn draw_the_same_objects(a: &Style, b: &Style) -> bool {
+    a.basic == b.basic
+        && a.geometry == b.geometry
+        && a.shaders.iter().map(own_scheme).eq(b.shaders.iter().map(own_scheme))
+        && a.mapping.len() == b.mapping.len()
+        && a.mapping.iter().zip(&b.mapping).all(|(a, b)| a.target == b.target && a.selector == b.selector)
 }
 
 /// The objects that a style draws of a scene, and what belongs to them.

@@ -18,7 +18,6 @@ use crate::gpu::PassTimes;
 use crate::providers::{CameraProvider, Lengths, LightingProvider};
 use crate::scene::{AovImage, Image, Pixels, Scene};
 use crate::shading::SHADERS;
-use build::ObjectKey;
 use live::Live;
 
 pub use crate::frame::MAX_SAMPLES;
@@ -99,7 +98,7 @@ struct Resolved {
 /// What the renderer holds, as far as it decides what a change costs.
 #[derive(Clone)]
 struct Drawn {
-    key: ObjectKey,
+    style: Arc<Style>,
     /// The style's shader of each material.
     used: Vec<usize>,
     lengths: Lengths,
@@ -334,8 +333,8 @@ impl Engine {
 fn resolve(content: &Content, drawn: Option<&Drawn>, height_px: u32) -> Resolved {
     let Content { scene, style, camera } = content;
     let molecule = &scene.molecule;
-    let key = ObjectKey::new(style);
-    let (list, used, lengths) = match drawn.filter(|drawn| drawn.key == key) {
+    let same = drawn.filter(|drawn| build::draw_the_same_objects(&drawn.style, style));
+    let (list, used, lengths) = match same {
         Some(drawn) => (None, drawn.used.clone(), drawn.lengths),
         None => {
             let objects = build::objects(molecule, style);
@@ -344,7 +343,7 @@ fn resolve(content: &Content, drawn: Option<&Drawn>, height_px: u32) -> Resolved
     };
     let materials = build::materials(style, &used, camera.exposure_factor(), &lengths, height_px);
     let lighting = LightingProvider::new(style.lights.clone(), molecule.bounding_sphere(), lengths);
-    Resolved { list, materials, drawn: Drawn { key, used, lengths, lighting, height_px } }
+    Resolved { list, materials, drawn: Drawn { style: Arc::clone(style), used, lengths, lighting, height_px } }
 }
 
 /// Calls `draw` with what a frame of the content needs beside objects and materials.
