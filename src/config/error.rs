@@ -8,7 +8,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::hint::{Hint, number, quote};
+use super::hint::{Hint, OfScene, number, quote};
 
 /// Most mistakes that are listed; the rest is counted.
 /// Ours: more than a screen holds, and a bound on the work that a hostile file causes.
@@ -319,7 +319,7 @@ pub enum Notice {
         name: &'static str,
     },
     /// A selector that matches nothing of the scene. Only who knows the scene can tell.
-    #[error("selector {} matches nothing in this scene{hint}", quote(.selector))]
+    #[error("selector {} matches nothing in this scene{}", quote(.selector), OfScene(.hint))]
     MatchesNothing {
         /// The selector as written.
         selector: String,

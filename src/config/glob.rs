@@ -10,7 +10,7 @@ pub(super) struct Glob {
 
 impl Glob {
     pub(super) fn new(pattern: &str) -> Self {
-        Self { pattern: pattern.to_owned(), is_plain: !pattern.contains(['*', '?']) }
+        Self { pattern: pattern.to_owned(), is_plain: is_plain(pattern) }
     }
 
     pub(super) fn pattern(&self) -> &str {
@@ -28,9 +28,34 @@ impl Glob {
     }
 }
 
+/// Whether a pattern has no wildcard, and matches its own text alone.
+pub(super) fn is_plain(pattern: &str) -> bool {
+    !pattern.contains(['*', '?'])
+}
+
+/// The same glob in its one shape: of neighbouring wildcards, all `?` stand before a single `*`.
+pub(super) fn normal(pattern: &str) -> String {
+    let mut normal = String::with_capacity(pattern.len());
+    let mut star = false;
+    for c in pattern.chars() {
+        if c == '*' {
+            star = true;
+            continue;
+        }
+        if c != '?' && std::mem::take(&mut star) {
+            normal.push('*');
+        }
+        normal.push(c);
+    }
+    if star {
+        normal.push('*');
+    }
+    normal
+}
+
 /// Each `*` first takes nothing, then one character more whenever the rest fails; only the last `*` ever needs to
 /// grow, which bounds the work by the product of the lengths.
-fn glob_matches(pattern: &str, text: &str) -> bool {
+pub(super) fn glob_matches(pattern: &str, text: &str) -> bool {
     let (mut p, mut t) = (pattern, text);
     // The pattern after the last star, and the text that it was last tried on.
     let mut star: Option<(&str, &str)> = None;
@@ -65,6 +90,15 @@ fn glob_matches(pattern: &str, text: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn neighbouring_wildcards_have_one_shape() {
+        for (pattern, expected) in
+            [("", ""), ("a**b", "a*b"), ("*?*", "?*"), ("?*?a*", "??*a*"), ("a*?", "a?*"), ("CA", "CA"), ("***", "*")]
+        {
+            assert_eq!(normal(pattern), expected, "{pattern}");
+        }
+    }
 
     #[test]
     fn globs_match_whole_values() {

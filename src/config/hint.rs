@@ -48,8 +48,23 @@ impl Hint {
     }
 }
 
+/// A hint of names that a scene has, rather than of words that are allowed.
+pub(super) struct OfScene<'a>(pub(super) &'a Hint);
+
+impl fmt::Display for OfScene<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.write(f, "the scene has")
+    }
+}
+
 impl fmt::Display for Hint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.write(f, "allowed")
+    }
+}
+
+impl Hint {
+    fn write(&self, f: &mut fmt::Formatter<'_>, of_list: &str) -> fmt::Result {
         match &self.nearest {
             Some(nearest) => write!(f, "; did you mean {}?", quote(nearest))?,
             None if self.allowed.is_empty() => return Ok(()),
@@ -59,7 +74,7 @@ impl fmt::Display for Hint {
             return Ok(());
         }
         let shown: Vec<String> = self.allowed.iter().map(|word| shorten(word)).collect();
-        write!(f, " allowed: {}", shown.join(", "))
+        write!(f, " {of_list}: {}", shown.join(", "))
     }
 }
 

@@ -88,10 +88,15 @@ impl Attribute {
             Self::File => "file",
         }
     }
+
+    /// Whether letters of either case match.
+    pub fn ignores_case(self) -> bool {
+        self == Self::Element
+    }
 }
 
 /// A set of attributes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct AttributeSet(u8);
 
 impl AttributeSet {
@@ -117,11 +122,18 @@ impl AttributeSet {
 }
 
 /// A parsed selector. Equal to another if both are written alike.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Eq)]
 pub struct Selector {
     text: String,
     kind: Option<ObjectKind>,
     conditions: Vec<(Attribute, Glob)>,
+}
+
+/// The rest follows from the text.
+impl PartialEq for Selector {
+    fn eq(&self, other: &Self) -> bool {
+        self.text == other.text
+    }
 }
 
 impl Selector {
@@ -175,6 +187,16 @@ impl Selector {
         self.conditions.iter().map(|(attribute, glob)| (*attribute, glob.pattern()))
     }
 
+    /// The conditions that an object does not meet, in the order of the text, given a way to ask for its attributes.
+    pub fn unmet<'a>(
+        &self,
+        attribute: &dyn Fn(Attribute) -> Option<&'a str>,
+    ) -> impl Iterator<Item = (Attribute, &str)> {
+        let meets =
+            |of: Attribute, glob: &Glob| attribute(of).is_some_and(|value| glob.matches(value, of.ignores_case()));
+        self.conditions.iter().filter(move |(of, glob)| !meets(*of, glob)).map(|(of, glob)| (*of, glob.pattern()))
+    }
+
     /// Whether it is for objects of a type at all.
     pub fn is_for(&self, kind: ObjectKind) -> bool {
         self.kind.is_none_or(|own| own == kind)
@@ -183,11 +205,7 @@ impl Selector {
     /// Whether it picks an object, given its type and a way to ask for its attributes. An attribute that the object
     /// does not have matches nothing.
     pub fn matches<'a>(&self, kind: ObjectKind, attribute: &dyn Fn(Attribute) -> Option<&'a str>) -> bool {
-        self.is_for(kind)
-            && self
-                .conditions
-                .iter()
-                .all(|(of, glob)| attribute(*of).is_some_and(|value| glob.matches(value, *of == Attribute::Element)))
+        self.is_for(kind) && self.unmet(attribute).next().is_none()
     }
 
     /// Its rank among selectors that match the same object: more attributes win, then a type over `*`.

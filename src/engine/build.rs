@@ -1,25 +1,36 @@
 //! From a scene and a style to what a frame draws: radii, colours, materials, and which objects are left out.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use glam::Vec3;
 
 use super::palette::AtomColors;
-use crate::config::{AtomRadius, Attribute, BaseColor, ObjectKind, Style, Value};
+use crate::config::{AtomRadius, BaseColor, Geometry, Style, Value};
 use crate::frame::Materials;
 use crate::frame::objects::{self, Connector, DrawList, Material, pack_linear};
-use crate::providers::{Lengths, ObjectAttributes, ShaderProvider};
+use crate::providers::{Assignment, Lengths};
 use crate::scene::{Atom, Bond, Molecule};
 use crate::shading::{self, MaterialContext, SHADERS};
 
-/// Whether two styles draw the same objects of a scene, as large and in the same colours of their own, so that they differ
-/// in materials at the most.
-pub fn draw_the_same_objects(a: &Style, b: &Style) -> bool {
-    a.basic == b.basic
-        && a.geometry == b.geometry
-        && a.shaders.iter().map(own_scheme).eq(b.shaders.iter().map(own_scheme))
-        && a.mapping.len() == b.mapping.len()
-        && a.mapping.iter().zip(&b.mapping).all(|(a, b)| a.target == b.target && a.selector == b.selector)
+/// Whatever of a style decides which objects are drawn, how large, and in which colours of their own. Styles that are
+/// equal in it draw the same objects, and differ in materials at the most.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObjectKey {
+    assignment: Arc<Assignment>,
+    geometry: Geometry,
+    schemes: Vec<BaseColor>,
+}
+
+impl ObjectKey {
+    /// The key of a style, of which the rules come to `assignment`.
+    pub fn new(style: &Style, assignment: Arc<Assignment>) -> ObjectKey {
+        ObjectKey {
+            assignment,
+            geometry: style.geometry.clone(),
+            schemes: style.shaders.iter().map(own_scheme).collect(),
+        }
+    }
 }
 
 /// The objects that a style draws of a scene, and what belongs to them.
@@ -32,42 +43,12 @@ pub struct Objects {
     pub lengths: Lengths,
 }
 
-struct AtomView<'a> {
-    molecule: &'a Molecule,
-    atom: &'a Atom,
-    models: &'a BTreeMap<u32, String>,
-}
-
-impl ObjectAttributes for AtomView<'_> {
-    fn attribute(&self, attribute: Attribute) -> Option<&str> {
-        match attribute {
-            Attribute::Element => Some(self.atom.element.symbol()),
-            Attribute::Name => Some(self.atom.name.as_str()),
-            Attribute::Residue => Some(self.molecule.residue(self.atom).name.as_str()),
-            Attribute::Chain => Some(self.molecule.chain(self.atom)),
-            Attribute::Model => self.models.get(&self.molecule.residue(self.atom).model).map(String::as_str),
-            _ => None,
-        }
-    }
-}
-
-/// Resolves the style for every object of the molecule.
-pub fn objects(molecule: &Molecule, style: &Style) -> Objects {
-    let provider = ShaderProvider::new(style);
-    let models: BTreeMap<u32, String> =
-        molecule.residues.iter().map(|residue| (residue.model, residue.model.to_string())).collect();
-    let view = |atom| AtomView { molecule, atom, models: &models };
+/// Makes every object of the molecule that the style draws; `assignment` is what the style's rules come to.
+pub fn objects(molecule: &Molecule, style: &Style, assignment: &Assignment) -> Objects {
     let bounds = molecule.bounding_sphere();
     let geometry_lengths = Lengths::new(bounds, None);
 
-    // The style's shader of each atom; one question for all where no selector asks for an attribute.
-    let uniform = provider.attributes_used(ObjectKind::Atom).is_empty();
-    let first = molecule.atoms.first().and_then(|atom| provider.for_object(ObjectKind::Atom, &view(atom)));
-    let uses: Vec<Option<usize>> = molecule
-        .atoms
-        .iter()
-        .map(|atom| if uniform { first } else { provider.for_object(ObjectKind::Atom, &view(atom)) })
-        .collect();
+    let uses: Vec<Option<usize>> = assignment.atoms.iter().map(|used| used.map(|index| index as usize)).collect();
 
     let radius = |atom: &Atom| {
         let plain = match style.geometry.atom {
@@ -103,18 +84,10 @@ pub fn objects(molecule: &Molecule, style: &Style) -> Objects {
     }
 
     let bond_radius = lengths.world(style.geometry.bond_radius) as f32;
-    let uniform = provider.attributes_used(ObjectKind::Connector).is_empty();
-    let first = molecule.bonds.first().map(|bond| connector_use(&provider, &view, molecule, bond));
-    for bond in if bond_radius > 0.0 { &molecule.bonds[..] } else { &[] } {
-        // Hidden with either of its atoms.
-        if uses[bond.a as usize].is_none() || uses[bond.b as usize].is_none() {
-            continue;
-        }
-        let used = match first {
-            Some(first) if uniform => first,
-            _ => connector_use(&provider, &view, molecule, bond),
-        };
-        let Some(used) = used else { continue };
+    let neighbours = Neighbours::new(molecule, style.geometry.bond_orders);
+    let bonds = molecule.bonds.iter().zip(&assignment.connectors);
+    for (bond, used) in bonds.take(if bond_radius > 0.0 { usize::MAX } else { 0 }) {
+        let Some(used) = used.map(|index| index as usize) else { continue };
         let (a, b) = (&molecule.atoms[bond.a as usize], &molecule.atoms[bond.b as usize]);
         let length = a.position.distance(b.position);
         if length <= 1e-6 * bounds.radius {
@@ -126,7 +99,8 @@ pub fn objects(molecule: &Molecule, style: &Style) -> Objects {
         }
         let scheme = own_scheme(&style.shaders[used]);
         let material = materials.of(used);
-        for (offset, radius) in strands(molecule, bond, order, bond_radius) {
+        let toward = || neighbours.direction(molecule, bond);
+        for (offset, radius) in strands(b.position - a.position, order, bond_radius, toward) {
             list.connectors.push(Connector {
                 a_world: (a.position + offset).to_array(),
                 radius,
@@ -138,15 +112,6 @@ pub fn objects(molecule: &Molecule, style: &Style) -> Objects {
         }
     }
     Objects { list, materials: materials.used, lengths }
-}
-
-fn connector_use<'a>(
-    provider: &ShaderProvider<'_>,
-    view: &impl Fn(&'a Atom) -> AtomView<'a>,
-    molecule: &'a Molecule,
-    bond: &Bond,
-) -> Option<usize> {
-    provider.for_connector(&view(&molecule.atoms[bond.a as usize]), &view(&molecule.atoms[bond.b as usize]))
 }
 
 fn scheme(shader: &crate::config::ShaderUse) -> BaseColor {
@@ -180,23 +145,46 @@ fn buried(radius_a: f32, radius_b: f32, length: f32, bond_radius: f32) -> bool {
     circle > bond_radius * bond_radius
 }
 
-/// Offset and radius of each cylinder of a bond: double and triple bonds lie side by side in the plane of a neighbour.
-fn strands(molecule: &Molecule, bond: &Bond, order: u8, radius: f32) -> Vec<(Vec3, f32)> {
+/// Finds a bond beside another one, without a search.
+struct Neighbours {
+    /// The first two bonds of each atom, as indices; empty where no style asks.
+    first_two: Vec<[Option<u32>; 2]>,
+}
+
+impl Neighbours {
+    fn new(molecule: &Molecule, needed: bool) -> Neighbours {
+        let mut first_two = vec![[None; 2]; if needed { molecule.atoms.len() } else { 0 }];
+        for (index, bond) in (0..).zip(if needed { &molecule.bonds[..] } else { &[] }) {
+            for atom in [bond.a, bond.b] {
+                if let Some(free) = first_two[atom as usize].iter_mut().find(|bond| bond.is_none()) {
+                    *free = Some(index);
+                }
+            }
+        }
+        Neighbours { first_two }
+    }
+
+    /// Where the first other bond of either of a bond's atoms points from there.
+    fn direction(&self, molecule: &Molecule, bond: &Bond) -> Option<Vec3> {
+        // One of the first two bonds of an atom is another one; no two bonds share both atoms.
+        let others = [bond.a, bond.b].map(|atom| self.first_two[atom as usize]);
+        let others = others.as_flattened().iter().flatten().filter(|index| molecule.bonds[**index as usize] != *bond);
+        let other = &molecule.bonds[*others.min()? as usize];
+        let position = |index: u32| molecule.atoms[index as usize].position;
+        let from_a = [bond.a, bond.b].contains(&other.a);
+        let (from, to) = if from_a { (other.a, other.b) } else { (other.b, other.a) };
+        Some(position(to) - position(from))
+    }
+}
+
+/// Offset and radius of each cylinder of a bond: double and triple bonds lie side by side in the plane of a neighbour,
+/// which is `toward` there.
+fn strands(along: Vec3, order: u8, radius: f32, toward: impl FnOnce() -> Option<Vec3>) -> Vec<(Vec3, f32)> {
     if order <= 1 {
         return vec![(Vec3::ZERO, radius)];
     }
-    let position = |index: u32| molecule.atoms[index as usize].position;
-    let axis = (position(bond.b) - position(bond.a)).normalize_or(Vec3::X);
-    // Bonds are few per atom; a neighbour is looked for only where an order is drawn.
-    let neighbour = molecule.bonds.iter().find_map(|other| {
-        let shares = |index| index == bond.a || index == bond.b;
-        match (shares(other.a), shares(other.b)) {
-            (true, false) => Some(position(other.b) - position(other.a)),
-            (false, true) => Some(position(other.a) - position(other.b)),
-            _ => None,
-        }
-    });
-    let side = neighbour.map_or(Vec3::ZERO, |toward| toward - axis * toward.dot(axis));
+    let axis = along.normalize_or(Vec3::X);
+    let side = toward().map_or(Vec3::ZERO, |toward| toward - axis * toward.dot(axis));
     let side = side.try_normalize().unwrap_or_else(|| axis.any_orthonormal_vector());
     let thin = radius * 0.55;
     let gap = radius * if order == 2 { 0.8 } else { 1.3 };

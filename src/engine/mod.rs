@@ -15,13 +15,15 @@ use crate::config::{CatalogEntry, LightKind, ObjectKind, Role, Shadow, Style};
 use crate::frame::objects::DrawList;
 use crate::frame::{self, Aovs, FrameInput, Materials, Renderer, TargetBytes};
 use crate::gpu::PassTimes;
-use crate::providers::{CameraProvider, Lengths, LightingProvider};
+use crate::providers::{CameraProvider, Lengths, LightingProvider, ShaderProvider};
 use crate::scene::{AovImage, Image, Pixels, Scene};
 use crate::shading::SHADERS;
+use build::ObjectKey;
 use live::Live;
 
 pub use crate::frame::MAX_SAMPLES;
 pub use crate::gpu::{Counters, Gpu, GpuError};
+pub use crate::providers::unmatched;
 pub use live::{Part, Refusal, Reload, ReloadTimes, Sources, source_tree_shaders};
 
 /// Effects and shaders of the contract that this version names but does not draw.
@@ -98,7 +100,8 @@ struct Resolved {
 /// What the renderer holds, as far as it decides what a change costs.
 #[derive(Clone)]
 struct Drawn {
-    style: Arc<Style>,
+    shaders: ShaderProvider,
+    key: ObjectKey,
     /// The style's shader of each material.
     used: Vec<usize>,
     lengths: Lengths,
@@ -333,17 +336,21 @@ impl Engine {
 fn resolve(content: &Content, drawn: Option<&Drawn>, height_px: u32) -> Resolved {
     let Content { scene, style, camera } = content;
     let molecule = &scene.molecule;
-    let same = drawn.filter(|drawn| build::draw_the_same_objects(&drawn.style, style));
-    let (list, used, lengths) = match same {
+    let shaders = match drawn {
+        Some(drawn) => drawn.shaders.with_style(style),
+        None => ShaderProvider::new(molecule, style),
+    };
+    let key = ObjectKey::new(style, Arc::clone(shaders.assignment()));
+    let (list, used, lengths) = match drawn.filter(|drawn| drawn.key == key) {
         Some(drawn) => (None, drawn.used.clone(), drawn.lengths),
         None => {
-            let objects = build::objects(molecule, style);
+            let objects = build::objects(molecule, style, shaders.assignment());
             (Some(objects.list), objects.materials, objects.lengths)
         }
     };
     let materials = build::materials(style, &used, camera.exposure_factor(), &lengths, height_px);
     let lighting = LightingProvider::new(style.lights.clone(), molecule.bounding_sphere(), lengths);
-    Resolved { list, materials, drawn: Drawn { style: Arc::clone(style), used, lengths, lighting, height_px } }
+    Resolved { list, materials, drawn: Drawn { shaders, key, used, lengths, lighting, height_px } }
 }
 
 /// Calls `draw` with what a frame of the content needs beside objects and materials.

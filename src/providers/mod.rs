@@ -1,12 +1,15 @@
 //! The three providers of [Prost2016 §3.2]: each answers one question about a scene from its part of the style file.
 
 mod camera;
+mod classes;
 mod lighting;
 mod shader;
+mod unmatched;
 
 pub use camera::CameraProvider;
 pub use lighting::LightingProvider;
-pub use shader::{ObjectAttributes, ShaderProvider};
+pub use shader::{Assignment, ShaderProvider};
+pub use unmatched::unmatched;
 
 use crate::config::Length;
 use crate::scene::Sphere;
