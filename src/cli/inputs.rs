@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::{Failure, tell};
-use crate::config::{self, Catalog, Source, Style};
+use crate::config::{self, Catalog, Files, Hint, Loader, Source, Style, Unreadable};
 use crate::engine;
 use crate::scene::{LoadOptions, ModelChoice, Scene};
 use crate::shipped::{self, Shipped};
@@ -59,11 +59,38 @@ pub(crate) fn load_style(name: &str) -> Result<Style, Failure> {
     let catalog = Catalog { shaders: &entries, kinds: engine::DRAWN_KINDS };
     let path = Path::new(name);
     let style = match shipped::find(shipped::LOOKS, name) {
-        Some(look) if !is_shadowed(path) => config::load(&Source::new(look.file, look.bytes), &catalog),
+        Some(look) if !is_shadowed(path) => {
+            config::load_with(&Source::new(look.file, look.bytes), &catalog, &FilesAndLooks)
+        }
         None if !path.exists() => return Err(unknown("look", name, shipped::LOOKS)),
-        _ => config::load_file(path, &catalog),
+        _ => config::load_file_with(path, &catalog, &FilesAndLooks),
     };
     style.map_err(Failure::input)
+}
+
+/// Finds the base of a style as a file beside it, or as a shipped look by its name, with `.json` or without.
+pub(crate) struct FilesAndLooks;
+
+impl Loader for FilesAndLooks {
+    fn load(&self, name: &str, from: &Source) -> Result<Source, Unreadable> {
+        let unreadable = match Files.load(name, from) {
+            // A folder of the name does not count, as on the command line.
+            Err(unreadable) if !unreadable.path.as_deref().is_some_and(is_shadowed) => unreadable,
+            found => return found,
+        };
+        let look_name = name.strip_suffix(".json").unwrap_or(name);
+        if let Some(look) = shipped::find(shipped::LOOKS, look_name) {
+            return Ok(Source::new(format!("{look_name} (shipped)"), look.bytes));
+        }
+        if unreadable.path.as_deref().is_some_and(Path::is_dir) || look_name.contains(['/', '\\']) {
+            return Err(unreadable);
+        }
+        let hint = Hint::new(look_name, shipped::LOOKS.iter().map(|look| look.name));
+        Err(Unreadable {
+            reason: format!("{}, and no shipped look of this name{hint}", unreadable.reason),
+            ..unreadable
+        })
+    }
 }
 
 /// Prints what a style says that this version passes over, and what a scene's file had mended.

@@ -426,3 +426,17 @@ fn a_large_style_of_one_line_is_read_in_time() {
     let loaded = load(&Source::new("s.json", style), &EARLY).unwrap();
     assert_eq!(loaded.shaders.len(), 20_001);
 }
+
+#[test]
+fn scratch() {
+    let Ok(cases) = std::fs::read_to_string("/tmp/h1_cases.txt") else { return };
+    let mut out = String::new();
+    for case in cases.split("\n----\n") {
+        let said = match load(&Source::new("s.json", case), &EARLY) {
+            Ok(_) => "LOADS".to_owned(),
+            Err(m) => m.to_string(),
+        };
+        out += &format!("{case}\n=>\n{said}\n----\n");
+    }
+    std::fs::write("/tmp/h1_out.txt", out).unwrap();
+}
