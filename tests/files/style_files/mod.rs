@@ -5,3 +5,4 @@ mod catalog;
 mod extending;
 mod loading;
 mod mutations;
+mod syntax;
