@@ -353,7 +353,11 @@ impl<'a> Lexer<'a> {
             self.at = end;
             return Token::Text(None);
         }
-        if let Some(length) = end_of_value(before_quote, inside) {
+        // A guess that goes on beyond what is looked at is none.
+        let is_line = start + 1 + inside.len() == self.line_break(start);
+        if let Some(length) = end_of_value(before_quote, inside)
+            && (is_line || length < inside.len())
+        {
             let value = &before_quote[..length];
             if is_sound_guess(value) {
                 return self.mended_text(start, start + 1 + length, value, "text");
@@ -476,8 +480,8 @@ fn is_strange(c: char) -> bool {
 
 /// What can be part of a piece without quotes.
 fn is_bare(c: char) -> bool {
-    !(c.is_whitespace() || is_strange(c) || closers(c).is_some())
-        && !matches!(c, '{' | '}' | '[' | ']' | ',' | ':' | ';' | '=' | '"' | '/')
+    let ends_it = matches!(c, '{' | '}' | '[' | ']' | ',' | ':' | ';' | '=' | '"' | '/');
+    !ends_it && !c.is_whitespace() && !is_strange(c) && closers(c).is_none()
 }
 
 /// What closes a text that begins with a quote other than `"`; `None` for what is no such quote.
