@@ -731,14 +731,14 @@ mod tests {
                 last = [last[1], (c, kept.len())];
             }
             kept.push(c);
-            while c == '"' {
+            let mut is_text = c == '"';
+            while is_text {
                 let Some(inner) = chars.next() else { break };
                 kept.push(inner);
-                match inner {
-                    '"' => break,
-                    '\\' => kept.extend(chars.next()),
-                    _ => {}
+                if inner == '\\' {
+                    kept.extend(chars.next());
                 }
+                is_text = inner != '"';
             }
         }
         kept.into_iter().collect()

@@ -7,7 +7,7 @@ fn wrong_styles_are_named_with_their_place() {
     let folder = Folder::new("styles");
     let deep = "[".repeat(200_000);
     let objects = "{\"$schema\":".repeat(100_000);
-    let comment = "/*".repeat(500_000);
+    let comment = "/* ".repeat(500_000);
     let cases: &[(&[u8], &str)] = &[
         (b"", "s.json: the file is empty"),
         (b" \n\n", "s.json: the file is empty"),
