@@ -278,6 +278,12 @@ impl<'a> Lexer<'a> {
         if !is_closed || (runs_on && self.is_odd_line(start)) {
             return self.unclosed(start, due);
         }
+        if is_closed && self.bytes().get(end + 1) == Some(&b'"') && self.is_odd_line(start) {
+            self.settle_line(start);
+            self.slips.tell(end + 1..end + 2, || "this quote is one too many: remove it");
+            self.at = end + 2;
+            return self.read(start + 1..end);
+        }
         if runs_on && let Some(close) = self.outer_close(end + 1) {
             self.tell_quote_within(end);
             self.at = close + 1;

@@ -279,13 +279,13 @@ impl Parser<'_> {
     }
 
     fn container(&mut self, bracket: Bracket, range: &Range<usize>) -> Node {
-        if self.open.len() == MAX_DEPTH {
+        if self.open.len() >= MAX_DEPTH {
             return self.skip_depth(range);
         }
         self.open.push((bracket, range.start));
         match bracket {
             Bracket::Curly => self.object(range.start, Vec::new()),
-            Bracket::Square => self.list(range.start),
+            Bracket::Square => self.list(range.start, Vec::new()),
         }
     }
 
@@ -317,23 +317,40 @@ impl Parser<'_> {
     fn object(&mut self, start: usize, mut members: Vec<Member>) -> Node {
         let mut comma_due = matches!(self.peeked, Some((Token::Comma, _)));
         let mut is_first = members.is_empty();
-        let end = loop {
+        let (end, is_closed) = loop {
             if let Some((key, range)) = self.key_of_parent.take() {
                 members.extend(self.member(Some(key), &range));
                 comma_due = true;
                 continue;
             }
             let (token, range) = self.take(Due::Key);
+            if self.is_in_lost_list(&token, comma_due, &members) {
+                self.put_back(token, range);
+                if let Some(last) = members.pop() {
+                    let start = last.value.span.start as usize;
+                    self.tell_missing_open(Bracket::Square, start, "value");
+                    let value = self.list(start, vec![last.value]);
+                    members.push(Member { value, ..last });
+                }
+                comma_due = true;
+                continue;
+            }
+            if self.begins_outer_member(&token, comma_due) {
+                let next = if token == Token::Comma { "comma" } else { "key" };
+                self.tell_missing_close(&range, next);
+                self.put_back(token, range.clone());
+                break (range.start, false);
+            }
             comma_due = match token {
                 Token::End => {
                     self.tell_unclosed();
-                    break self.last.end;
+                    break (self.last.end, false);
                 }
                 Token::Close(bracket) => match self.close(bracket, &range) {
-                    Closing::Here => break range.end,
+                    Closing::Here => break (range.end, true),
                     Closing::Above => {
                         self.put_back(token, range.clone());
-                        break range.start;
+                        break (range.start, false);
                     }
                     Closing::Extra => comma_due,
                 },
@@ -342,7 +359,7 @@ impl Parser<'_> {
                     false
                 }
                 Token::Text(key) => {
-                    if comma_due {
+                    if comma_due && self.told_bracket != Some(range.start) {
                         self.tell(range.clone(), || "a comma is missing before this key");
                     }
                     members.extend(self.member(key, &range));
@@ -358,7 +375,12 @@ impl Parser<'_> {
                     if bracket == Bracket::Curly && self.lacks_brace() {
                         self.tell_missing_close(&range, "{");
                         self.put_back(token, range.clone());
-                        break range.start;
+                        break (range.start, false);
+                    }
+                    if bracket == Bracket::Curly && is_first && *self.balance(bracket) > 0 {
+                        *self.balance(bracket) -= 1;
+                        self.tell(range, || "this { is one too many: remove it");
+                        continue;
                     }
                     self.tell(range.clone(), || format!("a key is missing before this {}", bracket.open()));
                     self.lose();
@@ -377,7 +399,7 @@ impl Parser<'_> {
             };
             is_first = false;
         };
-        Node { value: Tree::Object(members), span: self.span(&(start..end)) }
+        self.container_node(Tree::Object(members), start..end, is_closed)
     }
 
     /// The member of a key; `None` if the key could not be read, so that nobody can tell what its value should be.
@@ -401,22 +423,17 @@ impl Parser<'_> {
                 false
             }
         };
-        let (next, at) = self.peek(Due::Value);
-        let at = at.start;
-        let value = match next {
-            Token::Text(_) | Token::Bare | Token::Open(_) => self.value(),
-            Token::End => self.broken(at..at),
-            _ => {
+        while matches!(self.peek(Due::Value).0, Token::Colon | Token::Equals) {
+            let (_, range) = self.take(Due::Value);
+            self.tell(range, || "this is one colon too many: remove it");
+        }
+        let value = match self.member_value() {
+            Some(value) => value,
+            None => {
                 let missing =
                     if has_colon { "write one after the colon" } else { "write a colon and a value after it" };
                 self.tell(key_range.clone(), || format!("{} has no value: {missing}", shown()));
-                // A second colon belongs to nothing.
-                if matches!(self.peek(Due::Value).0, Token::Colon | Token::Equals) {
-                    self.take(Due::Value);
-                    if matches!(self.peek(Due::Value).0, Token::Text(_) | Token::Bare | Token::Open(_)) {
-                        self.value();
-                    }
-                }
+                let at = self.peek(Due::Value).1.start;
                 self.broken(at..at)
             }
         };
@@ -424,6 +441,34 @@ impl Parser<'_> {
             self.lose();
         }
         Some(Member { key: key?, key_span: self.span(key_range), value })
+    }
+
+    /// What follows a key and its colon; `None` if that is nothing.
+    fn member_value(&mut self) -> Option<Node> {
+        let (token, range) = self.take(Due::Value);
+        let at = range.start;
+        match token {
+            Token::Text(Some(_)) if self.lexer.next_byte() == Some(b':') && self.lacks_open(Bracket::Curly) => {
+                self.put_back(token, range);
+                self.tell_missing_open(Bracket::Curly, at, "key");
+                Some(self.object(at, Vec::new()))
+            }
+            Token::Text(_) | Token::Bare | Token::Open(_) => {
+                self.put_back(token, range);
+                Some(self.value())
+            }
+            Token::Close(bracket) if self.lacks_open(bracket) => {
+                self.tell_missing_open(bracket, at, if bracket == Bracket::Curly { "}" } else { "]" });
+                self.open.pop();
+                Some(self.broken(range))
+            }
+            // That the file ends within an object is said there.
+            Token::End => Some(self.broken(range)),
+            _ => {
+                self.put_back(token, range);
+                None
+            }
+        }
     }
 
     /// The key that stands without quotes; `None` if it is no key, and was passed over.
@@ -504,26 +549,30 @@ impl Parser<'_> {
         }
     }
 
-    /// The items of a list whose bracket is open.
-    fn list(&mut self, start: usize) -> Node {
-        let mut items: Vec<Node> = Vec::new();
+    /// The items of a list whose bracket is open, after those that are there already.
+    fn list(&mut self, start: usize, mut items: Vec<Node>) -> Node {
         let mut comma_due = false;
         let mut has_keys = false;
-        let end = loop {
+        let (end, is_closed) = loop {
             let (token, range) = self.take(Due::Value);
             comma_due = match token {
                 Token::End => {
                     self.tell_unclosed();
-                    break self.last.end;
+                    break (self.last.end, false);
                 }
                 Token::Close(bracket) => match self.close(bracket, &range) {
-                    Closing::Here => break range.end,
+                    Closing::Here => break (range.end, true),
                     Closing::Above => {
                         self.put_back(token, range.clone());
-                        break range.start;
+                        break (range.start, false);
                     }
                     Closing::Extra => comma_due,
                 },
+                Token::Comma if !comma_due && self.lacks_close() => {
+                    self.tell_missing_close(&range, "comma");
+                    self.put_back(token, range.clone());
+                    break (range.start, false);
+                }
                 Token::Comma | Token::Semicolon => {
                     if !comma_due && token == Token::Comma {
                         items.push(self.broken(range.start..range.start));
@@ -540,7 +589,18 @@ impl Parser<'_> {
                         self.key_of_parent = Some((key.clone(), key_range.clone()));
                         self.tell_missing_close(&key_range, "key");
                         self.put_back(token, range);
-                        break key_range.start;
+                        break (key_range.start, false);
+                    }
+                    if let Some(Node { value: Tree::Text(key), span }) = &key
+                        && self.lacks_open(Bracket::Curly)
+                    {
+                        let key_range = span.start as usize..span.end as usize;
+                        self.tell_missing_open(Bracket::Curly, key_range.start, "key");
+                        self.key_of_parent = Some((key.clone(), key_range.clone()));
+                        self.put_back(token, range);
+                        items.push(self.object(key_range.start, Vec::new()));
+                        comma_due = true;
+                        continue;
                     }
                     if !std::mem::replace(&mut has_keys, true) {
                         self.tell(range, || "a list holds no keys: put its keys and values between { and }");
@@ -561,7 +621,21 @@ impl Parser<'_> {
         if has_keys {
             return self.broken(start..end);
         }
-        Node { value: Tree::List(items), span: self.span(&(start..end)) }
+        // Of two brackets of which one is never closed, one is too many.
+        if !is_closed && items.len() == 1 && matches!(items[0].value, Tree::List(_)) {
+            return items.swap_remove(0);
+        }
+        self.container_node(Tree::List(items), start..end, is_closed)
+    }
+
+    /// A list or object. One that lacks its bracket may hold what belongs further out, and is not complained about
+    /// itself; what it holds is.
+    fn container_node(&mut self, value: Tree, range: Range<usize>, is_closed: bool) -> Node {
+        let span = self.span(&range);
+        if !is_closed {
+            self.broken.push((span.start, span.end));
+        }
+        Node { value, span }
     }
 
     /// What a closing bracket means to the innermost bracket that is open.
@@ -617,6 +691,54 @@ impl Parser<'_> {
         is_value && *self.balance(Bracket::Square) > 0
     }
 
+    /// Whether a list or object may begin here without its bracket.
+    fn lacks_open(&mut self, bracket: Bracket) -> bool {
+        self.open.len() < MAX_DEPTH && *self.balance(bracket) < 0
+    }
+
+    /// Whether the innermost list or object is not the style itself, and may end here without its bracket.
+    fn lacks_close(&mut self) -> bool {
+        match self.open.as_slice() {
+            &[_, .., (innermost, _)] => *self.balance(innermost) > 0,
+            _ => false,
+        }
+    }
+
+    /// Begins a list or object whose bracket is missing at an offset, before `next`.
+    fn tell_missing_open(&mut self, bracket: Bracket, at: usize, next: &str) {
+        *self.balance(bracket) += 1;
+        self.tell(at..at + 1, || format!("a {} is missing before this {next}", bracket.open()));
+        self.open.push((bracket, at));
+    }
+
+    /// Whether a token in place of a key shows that the last value begins a list that lacks its bracket: it is a further
+    /// item, or the list's end.
+    fn is_in_lost_list(&mut self, token: &Token, comma_due: bool, members: &[Member]) -> bool {
+        let Some(last) = members.last().filter(|last| last.value.value != Tree::Broken) else {
+            return false;
+        };
+        let shows_list = match token {
+            Token::Text(_) | Token::Bare => !comma_due && self.lexer.next_byte() != Some(b':'),
+            Token::Open(_) => !comma_due,
+            Token::Close(Bracket::Square) => matches!(last.value.value, Tree::Text(_) | Tree::Object(_)),
+            _ => false,
+        };
+        shows_list && self.lacks_open(Bracket::Square)
+    }
+
+    /// Whether a token in place of a key belongs to an object further out, since this one lacks its bracket: a key that
+    /// only a style itself has, or a comma after nothing.
+    fn begins_outer_member(&mut self, token: &Token, comma_due: bool) -> bool {
+        let is_outer = match token {
+            Token::Text(Some(key)) => {
+                super::style::KEYS.contains(&key.as_str()) && self.lexer.next_byte() == Some(b':')
+            }
+            Token::Comma => !comma_due,
+            _ => false,
+        };
+        is_outer && self.lacks_close()
+    }
+
     /// Ends the innermost list or object before a token that cannot be part of it.
     fn tell_missing_close(&mut self, range: &Range<usize>, next: &str) {
         let Some((innermost, at)) = self.open.pop() else {
@@ -661,281 +783,4 @@ impl Parser<'_> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use serde_json::Value;
-
-    fn parsed(text: &str) -> (Text, Mistakes) {
-        let mut mistakes = Mistakes::default();
-        let text = parse(&Source::new("s.json", text), 0, &mut mistakes);
-        (text, mistakes)
-    }
-
-    fn tree(text: &str) -> Tree {
-        let (text, mistakes) = parsed(text);
-        assert!(mistakes.is_empty(), "{mistakes}");
-        text.root.value
-    }
-
-    #[test]
-    fn only_one_comma_may_trail() {
-        let items = |text: &str| match tree(text) {
-            Tree::List(items) => items.len(),
-            other => panic!("{other:?} is no list"),
-        };
-        assert_eq!((items("[1,]"), items("[1 /**/ , // x\n ]")), (1, 1));
-        for text in ["[,]", "[1,,]", "{,}", "{\"a\":,}", "[1],", ",", "[1,/**/,]", "{\"a\":1,,}"] {
-            assert!(parsed(text).1.to_string().starts_with("s.json:1:"), "{text}");
-        }
-    }
-
-    #[test]
-    fn spans_cover_keys_and_values() {
-        let text = "{ \"a\" : [10, \"\u{e9}\"] }";
-        let Tree::Object(members) = tree(text) else { panic!("this is an object") };
-        let of = |span: Span| &text[span.start as usize..span.end as usize];
-        assert_eq!((of(members[0].key_span), of(members[0].value.span)), ("\"a\"", "[10, \"\u{e9}\"]"));
-    }
-
-    #[test]
-    fn every_duplicate_is_found() {
-        let (_, mistakes) = parsed("{\"a\":1,\n\"a\":{\"b\":1,\"b\":2,\"b\":3}}");
-        assert_eq!(
-            mistakes.to_string(),
-            "s.json:2:1 (a): duplicate key \"a\": it is already at 1:2\n\
-             s.json:2:12 (a.b): duplicate key \"b\": it is already at 2:6\n\
-             s.json:2:18 (a.b): duplicate key \"b\": it is already at 2:6"
-        );
-    }
-
-    #[test]
-    fn spans_of_broken_values_cover_what_holds_them() {
-        let (text, _) = parsed("{ \"a\": [1, x], \"b\": , \"c\": [2] }");
-        let Tree::Object(members) = &text.root.value else { panic!("this is an object") };
-        let held: Vec<bool> = members.iter().map(|member| text.holds_broken(member.value.span)).collect();
-        assert_eq!(held, [true, true, false]);
-        assert!(members.iter().all(|member| !text.holds_broken(member.key_span)));
-    }
-
-    /// What stands between `,` and a closing bracket may go; all else is what another parser must take as well.
-    fn without_trailing_commas(text: &str) -> String {
-        let mut kept: Vec<char> = Vec::new();
-        let mut chars = text.chars();
-        // The last two characters outside texts that are no blanks, each with its index.
-        let mut last = [(' ', 0); 2];
-        while let Some(c) = chars.next() {
-            if matches!(c, ']' | '}') && last[1].0 == ',' && !matches!(last[0].0, ' ' | ',' | ':' | '[' | '{') {
-                kept[last[1].1] = ' ';
-            }
-            if !matches!(c, ' ' | '\t' | '\n' | '\r') {
-                last = [last[1], (c, kept.len())];
-            }
-            kept.push(c);
-            let mut is_text = c == '"';
-            while is_text {
-                let Some(inner) = chars.next() else { break };
-                kept.push(inner);
-                if inner == '\\' {
-                    kept.extend(chars.next());
-                }
-                is_text = inner != '"';
-            }
-        }
-        kept.into_iter().collect()
-    }
-
-    /// Of a key that is there twice, the later value counts, as there.
-    fn value_of(node: &Node) -> Value {
-        match &node.value {
-            Tree::Null | Tree::Broken => Value::Null,
-            Tree::Bool(value) => Value::Bool(*value),
-            Tree::Number(number) => Value::from(*number),
-            Tree::Text(text) => Value::from(text.as_str()),
-            Tree::List(items) => items.iter().map(value_of).collect(),
-            Tree::Object(members) => {
-                Value::Object(members.iter().map(|member| (member.key.clone(), value_of(&member.value))).collect())
-            }
-        }
-    }
-
-    /// Equal, but for the last digits of numbers, which the other parser rounds more quickly.
-    fn are_equal(a: &Value, b: &Value) -> bool {
-        match (a, b) {
-            (Value::Number(a), Value::Number(b)) => {
-                let (a, b) = (a.as_f64().unwrap(), b.as_f64().unwrap());
-                (a - b).abs() <= 1e-15 * a.abs().max(b.abs())
-            }
-            (Value::Array(a), Value::Array(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| are_equal(a, b)),
-            (Value::Object(a), Value::Object(b)) => {
-                a.len() == b.len() && a.iter().all(|(key, a)| b.get(key).is_some_and(|b| are_equal(a, b)))
-            }
-            (a, b) => a == b,
-        }
-    }
-
-    #[test]
-    fn another_parser_takes_the_same_texts() {
-        const SEEDS: [&str; 4] = [
-            "{\"a\": [1, -2.5e3, 0.25, {\"b\": null, \"c\": [true, false]}], \"d\\n\": \"\\u00e9\\ud83d\\ude00\", \"\": {}}",
-            "[\"x\", \"\\\\ \\/ \\b\\f\\r\\t \\\" \", 1e-7, 120E+2, -0, 0.0, [[], [[]], {}], 123456789012345678901234567890]",
-            "{\r\n\t\"camera\": {\"fov\": 35, \"bgcolor\": [255, 255, 255]},\r\n\t\"mapping\": {\"atom[element=O]\": \"a\"}\n}",
-            " \"\u{e9}\u{1F600}\" ",
-        ];
-        const PIECES: [&str; 44] = [
-            "{",
-            "}",
-            "[",
-            "]",
-            ",",
-            ":",
-            "\"",
-            "\\",
-            "null",
-            "true",
-            "1e999",
-            "-1",
-            "0.5",
-            "1e308",
-            "\u{e9}",
-            "\r\n",
-            " ",
-            "\t",
-            "\"a\"",
-            "\\u0000",
-            "\\ud83d",
-            "\\ude00",
-            "0",
-            "00",
-            "-",
-            "+",
-            ".",
-            "e",
-            "E5",
-            "'",
-            "=",
-            ";",
-            "#",
-            "NaN",
-            "\"a\":1,",
-            "\u{feff}",
-            "\u{a0}",
-            "\u{1}",
-            "\u{7f}",
-            "\\n",
-            "\\x",
-            "[1,]",
-            "{\"a\":1,}",
-            ",,",
-        ];
-        let mut state = 0x9E37_79B9_7F4A_7C15_u64;
-        let mut below = |end: usize| {
-            state ^= state << 13;
-            state ^= state >> 7;
-            state ^= state << 17;
-            (state >> 33) as usize % end
-        };
-        let (mut taken, mut refused) = (0, 0);
-        for i in 0..60_000 {
-            let mut chars: Vec<char> = SEEDS[i % SEEDS.len()].chars().collect();
-            for _ in 0..=below(3) {
-                let at = below(chars.len() + 1);
-                let end = (at + below(4)).min(chars.len());
-                match below(4) {
-                    0 => drop(chars.drain(at..end)),
-                    1 => drop(chars.splice(at..end, PIECES[below(PIECES.len())].chars())),
-                    2 => drop(chars.splice(at..at, PIECES[below(PIECES.len())].chars())),
-                    _ => {
-                        let from = below(chars.len() + 1);
-                        let copy: Vec<char> = chars[from..(from + below(30)).min(chars.len())].to_vec();
-                        chars.splice(at..at, copy);
-                    }
-                }
-            }
-            // A mark is ours to pass over, and so are comments.
-            let text: String = chars.iter().collect();
-            if text.starts_with('\u{feff}') || text.contains('/') && !text.contains("\\/") {
-                continue;
-            }
-            let (ours, mistakes) = parsed(&text);
-            let is_taken = mistakes.list.iter().all(|mistake| mistake.problem.code() == "duplicate_key");
-            match serde_json::from_str::<Value>(&without_trailing_commas(&text)) {
-                Ok(theirs) => {
-                    assert!(is_taken, "{text:?} is JSON, but: {mistakes}");
-                    assert!(ours.is_whole && are_equal(&value_of(&ours.root), &theirs), "{text:?}: {:?}", ours.root);
-                    taken += 1;
-                }
-                Err(error) => {
-                    assert!(!is_taken, "{text:?} is no JSON: {error}");
-                    refused += 1;
-                }
-            }
-        }
-        assert!(taken > 5_000 && refused > 20_000, "{taken} taken, {refused} refused");
-    }
-
-    #[test]
-    fn hostile_texts_take_little_time_and_few_words() {
-        let flood = |piece: &str| piece.repeat((MAX_BYTES / piece.len()).min(2_000_000 / piece.len()));
-        for piece in [
-            "[",
-            "]",
-            "{",
-            "}",
-            "\"",
-            "\\",
-            ",",
-            ":",
-            "'",
-            "#",
-            "/",
-            "[]",
-            "[],",
-            "{}",
-            "\"\"",
-            "\"a\"b",
-            "\"a:\"",
-            "\"\\",
-            "a ",
-            "a\"",
-            "'a\"",
-            "a(",
-            "a[",
-            "[}",
-            "{]",
-            "{\"a\":",
-            "{\"a\":[",
-            "\"a\":",
-            "=",
-            ";",
-            "1,",
-            "1 ",
-            "\u{201c}",
-            "\u{201c}\"",
-            "\u{a0}",
-            "\u{1}",
-            "/*",
-            "*/",
-            "//",
-            "\"//\"a",
-            "\"/*\"a",
-            "\"a,",
-            "\"a}",
-            "a:",
-            "[\"a\":1,",
-            "\n\"a",
-            "\"a\n",
-            "0x",
-            "\"\\u",
-            ",\"",
-            ", \"a\"x",
-            "\u{1F600}",
-            "\u{202e}",
-        ] {
-            let text = flood(piece);
-            let (_, mistakes) = parsed(&text);
-            assert!(mistakes.list.len() <= 100, "{piece}");
-            let (_, mistakes) = parsed(&format!("{{\"a\": \"{text}"));
-            assert!(!mistakes.is_empty(), "{piece}");
-        }
-    }
-}
+mod tests;

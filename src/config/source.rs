@@ -37,17 +37,18 @@ impl Source {
     }
 }
 
-/// Where lines and characters begin in a text.
+/// Where lines and characters begin in a text. In 32 bits, which hold [`super::syntax::MAX_BYTES`]: a hostile file has as
+/// many lines as bytes.
 #[derive(Debug)]
 pub(super) struct Positions {
-    line_starts: Vec<usize>,
+    line_starts: Vec<u32>,
     /// Characters that begin before each multiple of [`BLOCK`].
-    chars_before: Vec<usize>,
+    chars_before: Vec<u32>,
 }
 
 impl Positions {
     pub(super) fn new(text: &[u8]) -> Self {
-        let breaks = text.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at + 1);
+        let breaks = text.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at as u32 + 1);
         let mut chars_before = Vec::with_capacity(text.len() / BLOCK + 1);
         let mut count = 0;
         for block in text.chunks(BLOCK) {
@@ -61,21 +62,21 @@ impl Positions {
     /// Line and column of a byte, both from 1, the column in characters.
     pub(super) fn line_column(&self, text: &[u8], offset: usize) -> (u32, u32) {
         let offset = offset.min(text.len());
-        let line = self.line_starts.partition_point(|start| *start <= offset);
-        let start = self.line_starts[line - 1];
+        let line = self.line_starts.partition_point(|start| *start as usize <= offset);
+        let start = self.line_starts[line - 1] as usize;
         let column = self.chars_until(text, offset) - self.chars_until(text, start) + 1;
-        (line as u32, column as u32)
+        (line as u32, column)
     }
 
-    fn chars_until(&self, text: &[u8], offset: usize) -> usize {
+    fn chars_until(&self, text: &[u8], offset: usize) -> u32 {
         let block = offset / BLOCK;
         self.chars_before[block] + count_chars(&text[block * BLOCK..offset])
     }
 }
 
 /// Characters that begin in these bytes of UTF-8.
-fn count_chars(bytes: &[u8]) -> usize {
-    bytes.iter().filter(|byte| **byte & 0xC0 != 0x80).count()
+fn count_chars(bytes: &[u8]) -> u32 {
+    bytes.iter().filter(|byte| **byte & 0xC0 != 0x80).count() as u32
 }
 
 /// A text with its positions and, once parsed, its own tree.
