@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::{Failure, tell};
-use crate::config::{self, Catalog, Mistakes, Source, Style};
+use crate::config::{self, Catalog, Files, Hint, Loader, Mistakes, Source, Style, Unreadable};
 use crate::engine;
 use crate::scene::{LoadOptions, ModelChoice, Scene, SceneError};
 use crate::shipped::{self, Shipped};
@@ -92,8 +92,8 @@ pub(crate) fn read_style(input: &Input) -> Result<Style, Mistakes> {
     let entries = engine::catalog();
     let catalog = Catalog { shaders: &entries, kinds: engine::DRAWN_KINDS };
     match input {
-        Input::Shipped(look) => config::load(&Source::new(look.file, look.bytes), &catalog),
-        Input::File(path) => config::load_file(path, &catalog),
+        Input::Shipped(look) => config::load_with(&Source::new(look.file, look.bytes), &catalog, &FilesAndLooks),
+        Input::File(path) => config::load_file_with(path, &catalog, &FilesAndLooks),
     }
 }
 
@@ -111,6 +111,31 @@ pub(crate) fn load_style(name: &str) -> Result<Style, Failure> {
         // Of a file that is not there, the looks that are may be meant.
         Some(path) if !path.exists() => Err(unknown("look", name, shipped::LOOKS)),
         _ => read_style(&input).map_err(Failure::input),
+    }
+}
+
+/// Finds the base of a style as a file beside it, or as a shipped look by its name, with `.json` or without.
+pub(crate) struct FilesAndLooks;
+
+impl Loader for FilesAndLooks {
+    fn load(&self, name: &str, from: &Source) -> Result<Source, Unreadable> {
+        let unreadable = match Files.load(name, from) {
+            // A folder of the name does not count, as on the command line.
+            Err(unreadable) if !unreadable.path.as_deref().is_some_and(is_shadowed) => unreadable,
+            found => return found,
+        };
+        let look_name = name.strip_suffix(".json").unwrap_or(name);
+        if let Some(look) = shipped::find(shipped::LOOKS, look_name) {
+            return Ok(Source::new(format!("{look_name} (shipped)"), look.bytes));
+        }
+        if unreadable.path.as_deref().is_some_and(Path::is_dir) || look_name.contains(['/', '\\']) {
+            return Err(unreadable);
+        }
+        let hint = Hint::new(look_name, shipped::LOOKS.iter().map(|look| look.name));
+        Err(Unreadable {
+            reason: format!("{}, and no shipped look of this name{hint}", unreadable.reason),
+            ..unreadable
+        })
     }
 }
 
@@ -175,4 +200,59 @@ fn is_shadowed(path: &Path) -> bool {
 
 fn looks_like_a_name(path: &Path) -> bool {
     !path.exists() && path.extension().is_none() && path.components().count() <= 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Loads `own` as a file in a folder of its own, beside another style.
+    fn load(test: &str, own: &str, beside: Option<(&str, &str)>) -> Result<Style, String> {
+        let folder = std::env::temp_dir().join(format!("restyle_{test}_{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let path = folder.join("own.json");
+        std::fs::write(&path, own).unwrap();
+        if let Some((name, text)) = beside {
+            std::fs::write(folder.join(name), text).unwrap();
+        }
+        let style = load_style(path.to_str().unwrap()).map_err(|failure| failure.message);
+        std::fs::remove_dir_all(&folder).unwrap();
+        style
+    }
+
+    #[test]
+    fn a_shipped_look_is_a_base_by_its_name() {
+        let look = load_style("education").unwrap_or_else(|failure| panic!("{}", failure.message));
+        for name in ["education", "education.json"] {
+            let style = load("shipped_base", &format!("{{ \"extends\": \"{name}\" }}"), None).unwrap();
+            assert_eq!((style.camera, style.mapping.len()), (look.camera.clone(), look.mapping.len()));
+            // Only the style itself is a file that can change.
+            assert_eq!(style.files.len(), 1);
+        }
+    }
+
+    #[test]
+    fn a_file_comes_before_a_shipped_look() {
+        let beside = ("education.json", "{ \"camera\": { \"fov\": 21 } }");
+        let style = load("file_first", "{ \"extends\": \"education.json\" }", Some(beside)).unwrap();
+        assert_eq!((style.camera.fov, style.files.len()), (21.0, 2));
+    }
+
+    #[test]
+    fn mistakes_over_a_shipped_look_name_it() {
+        let own =
+            "{ \"extends\": \"education\", \"shaders\": [{ \"name\": \"x\" }], \"mapping\": { \"atom\": \"nix\" } }";
+        let said = load("over_shipped", own, None).unwrap_err();
+        assert!(said.contains("no shader is called \"nix\"") && !said.contains("(shipped)"), "{said}");
+    }
+
+    #[test]
+    fn a_slip_in_the_name_of_a_look_is_met_with_the_nearest() {
+        let said = load("slip", "{ \"extends\": \"eduction.json\" }", None).unwrap_err();
+        let due = "cannot extend \"eduction.json\": there is no such file, and no shipped look of this name; \
+                   did you mean \"education\"? allowed: advertisement, education, scientific, future";
+        assert!(said.ends_with(due), "{said}");
+        let said = load("slip", "{ \"extends\": \"looks/education.json\" }", None).unwrap_err();
+        assert!(said.ends_with(": there is no such file"), "{said}");
+    }
 }

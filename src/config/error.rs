@@ -81,7 +81,7 @@ pub enum Problem {
         hint: Hint,
     },
     /// A key that must be there.
-    #[error("{owner} needs {}{hint}", quote(.key))]
+    #[error("{owner} needs {}: add it{hint}", quote(.key))]
     MissingKey {
         /// Who needs it.
         owner: String,
@@ -244,7 +244,8 @@ pub struct Mistakes {
     pub list: Vec<Mistake>,
     /// How many more there are than the list holds.
     pub unlisted: usize,
-    /// The files that were read, the style first, then its bases: what to watch for a correction.
+    /// The files that were read, the style first, then its bases, and last one that is not there or cannot be read: what
+    /// to watch for a correction.
     pub files: Vec<PathBuf>,
 }
 

@@ -8,9 +8,11 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use super::error::{Mistakes, Place, Problem};
+use super::file::{Unreadable, read_file};
+use super::parse::parse;
 use super::source::{Source, Texts};
 use super::style::check_version;
-use super::syntax::{self, MAX_BYTES, Member, Node, Tree};
+use super::syntax::{Member, Node, Tree};
 
 /// Longest chain of bases. Ours: nobody keeps track of more.
 const MAX_BASES: usize = 16;
@@ -18,12 +20,12 @@ const MAX_BASES: usize = 16;
 /// Finds the base that a style names.
 pub trait Loader {
     /// Reads the base `name` of the style `from`, or says why that is not possible.
-    fn load(&self, name: &str, from: &Source) -> Result<Source, String>;
+    fn load(&self, name: &str, from: &Source) -> Result<Source, Unreadable>;
 }
 
 impl<F: Fn(&str, &Source) -> Result<Source, String>> Loader for F {
-    fn load(&self, name: &str, from: &Source) -> Result<Source, String> {
-        self(name, from)
+    fn load(&self, name: &str, from: &Source) -> Result<Source, Unreadable> {
+        self(name, from).map_err(Unreadable::from)
     }
 }
 
@@ -32,35 +34,18 @@ impl<F: Fn(&str, &Source) -> Result<Source, String>> Loader for F {
 pub struct Files;
 
 impl Loader for Files {
-    fn load(&self, name: &str, from: &Source) -> Result<Source, String> {
+    fn load(&self, name: &str, from: &Source) -> Result<Source, Unreadable> {
+        if name.is_empty() {
+            return Err(Unreadable::from("the name is empty: write the name of a style file".to_owned()));
+        }
         let Some(path) = &from.path else {
-            return Err("only a style that is a file can extend another file".to_owned());
+            return Err(Unreadable::from("only a style that is a file can extend another file".to_owned()));
         };
         let beside = |path: &Path| path.parent().map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
         let mut source = read_file(&beside(path))?;
         source.name = beside(Path::new(&from.name)).display().to_string();
         Ok(source)
     }
-}
-
-/// Reads a style file, or says why that is not possible.
-pub fn read_file(path: &Path) -> Result<Source, String> {
-    use std::io::{ErrorKind, Read};
-    let reason = |error: std::io::Error| match error.kind() {
-        ErrorKind::NotFound => "there is no such file".to_owned(),
-        ErrorKind::PermissionDenied => "no permission to read this file".to_owned(),
-        ErrorKind::IsADirectory => "this is a folder, not a style file".to_owned(),
-        _ => format!("this file cannot be read: {error}"),
-    };
-    if path.is_dir() {
-        return Err("this is a folder, not a style file".to_owned());
-    }
-    let mut text = Vec::new();
-    // A byte-order mark and one byte more than is allowed are enough to know that it is too much.
-    let file = std::fs::File::open(path).map_err(reason)?;
-    file.take(MAX_BYTES as u64 + 4).read_to_end(&mut text).map_err(reason)?;
-    let canonical = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    Ok(Source { name: path.display().to_string(), text, path: Some(canonical) })
 }
 
 /// A style with its bases in one tree.
@@ -71,74 +56,95 @@ pub(super) struct Merged {
     pub(super) files: Vec<PathBuf>,
 }
 
-/// Parses a style and its bases into `texts` and merges them.
-pub(super) fn merge_all(source: &Source, loader: &dyn Loader, texts: &mut Texts) -> Result<Merged, Mistakes> {
-    let mut mistakes = Mistakes::default();
-    let mut chain = vec![source.clone()];
-    let complete = read_chain(&mut chain, loader, texts, &mut mistakes);
-    let files: Vec<PathBuf> = chain.iter().filter_map(|source| source.path.clone()).collect();
-    // Without its base, half a style would be full of names that nothing explains.
-    if !complete {
-        mistakes.files = files;
-        return Err(mistakes);
+/// Parses a style and its bases into `texts` and merges what can be read of them.
+pub(super) fn merge_all(source: &Source, loader: &dyn Loader, texts: &mut Texts) -> Merged {
+    let mut chain = Chain { sources: vec![source.clone()], tried: None, mistakes: Mistakes::default() };
+    let mut usable = Vec::new();
+    loop {
+        let index = chain.sources.len() - 1;
+        let text = parse(&chain.sources[index], index as u32, &mut chain.mistakes);
+        texts.0.push(text);
+        let (is_usable, base) = chain.read_last(loader, texts);
+        usable.push(is_usable);
+        match base {
+            Some(base) => chain.sources.push(base),
+            None => break,
+        }
     }
-    let mut roots = texts.0.iter().rev().map(|text| &text.root);
-    let first = roots.next().cloned().expect("the style itself was parsed");
+    let files = chain.sources.iter().filter_map(|source| source.path.clone()).chain(chain.tried).collect();
+    // A style that is unusable as a whole leaves its bases to be checked.
+    let mut roots = texts.0.iter().zip(usable).rev().filter(|(_, is_usable)| *is_usable).map(|(text, _)| &text.root);
+    let first = roots.next().unwrap_or(&texts.0[0].root).clone();
     let root = roots.fold(first, merge);
-    Ok(Merged { root, mistakes, files })
+    Merged { root, mistakes: chain.mistakes, files }
 }
 
-/// Parses the last source of the chain, then its base, and so on; false if one of them cannot be used.
-fn read_chain(chain: &mut Vec<Source>, loader: &dyn Loader, texts: &mut Texts, mistakes: &mut Mistakes) -> bool {
-    loop {
-        let index = chain.len() - 1;
-        match syntax::parse(&chain[index], index as u32, mistakes) {
-            Ok(text) => texts.0.push(text),
-            Err(wrong) => {
-                let (place, problem) = *wrong;
-                mistakes.push(|| place, problem);
-                return false;
-            }
+/// A style, its base, and so on, while they are read.
+struct Chain {
+    sources: Vec<Source>,
+    /// A base that is not there.
+    tried: Option<PathBuf>,
+    mistakes: Mistakes,
+}
+
+impl Chain {
+    /// Whether the last text can be checked, and the base that it names.
+    fn read_last(&mut self, loader: &dyn Loader, texts: &mut Texts) -> (bool, Option<Source>) {
+        let Some(text) = texts.0.last_mut() else {
+            return (false, None);
+        };
+        let is_base = self.sources.len() > 1;
+        if let Err((span, problem)) = check_version(&text.root)
+            && !text.holds_broken(span)
+        {
+            // What a key means in another version is not known.
+            self.mistakes.push(|| text.place(span), problem);
+            text.is_whole = false;
+            return (false, None);
         }
-        let text = &texts.0[index];
-        if let Err((span, problem)) = check_version(&text.root) {
-            mistakes.push(|| text.place(span), problem);
-            return false;
-        }
-        if index > 0 && !matches!(text.root.value, Tree::Object(_)) {
+        if is_base && !matches!(text.root.value, Tree::Object(_) | Tree::Broken) {
             let problem = super::read::wrong_type("style", "an object", &text.root);
-            mistakes.push(|| text.place(text.root.span), problem);
-            return false;
+            self.mistakes.push(|| text.place(text.root.span), problem);
+            text.is_whole = false;
+            return (false, None);
         }
         let Some(node) = text.root.get("extends") else {
-            return true;
+            return (true, None);
         };
-        let Some(name) = node.text() else {
-            let problem = super::read::wrong_type("extends", "the name of a style file", node);
-            mistakes.push(|| text.place(node.span), problem);
-            return false;
+        if text.holds_broken(node.span) {
+            text.is_whole = false;
+            return (true, None);
+        }
+        let found = match node.text() {
+            None => Err(super::read::wrong_type("extends", "the name of a style file", node)),
+            Some(name) => self.find_base(name, loader),
         };
-        match find_base(name, chain, loader) {
-            Ok(base) => chain.push(base),
-            Err(reason) => {
-                let problem = Problem::Extends { base: name.to_owned(), reason };
-                mistakes.push(|| text.place(node.span), problem);
-                return false;
+        match found {
+            Ok(base) => (true, Some(base)),
+            Err(problem) => {
+                self.mistakes.push(|| text.place(node.span), problem);
+                text.is_whole = false;
+                (true, None)
             }
         }
     }
-}
 
-fn find_base(name: &str, chain: &[Source], loader: &dyn Loader) -> Result<Source, String> {
-    if chain.len() > MAX_BASES {
-        return Err(format!("more than {MAX_BASES} styles extend one another"));
+    fn find_base(&mut self, name: &str, loader: &dyn Loader) -> Result<Source, Problem> {
+        let problem = |reason| Problem::Extends { base: name.to_owned(), reason };
+        let last = self.sources.last().expect("the style itself is the first");
+        if self.sources.len() > MAX_BASES {
+            return Err(problem(format!("more than {MAX_BASES} styles extend one another: make the chain shorter")));
+        }
+        let base = loader.load(name, last).map_err(|unreadable| {
+            self.tried = unreadable.path;
+            problem(unreadable.reason)
+        })?;
+        if self.sources.iter().any(|source| source.is_same_file(&base)) {
+            let names: Vec<&str> = self.sources.iter().chain([&base]).map(|source| source.name.as_str()).collect();
+            return Err(problem(format!("these styles extend one another in a circle: {}", names.join(" > "))));
+        }
+        Ok(base)
     }
-    let base = loader.load(name, &chain[chain.len() - 1])?;
-    if chain.iter().any(|source| source.is_same_file(&base)) {
-        let names: Vec<&str> = chain.iter().chain([&base]).map(|source| source.name.as_str()).collect();
-        return Err(format!("these styles extend one another in a circle: {}", names.join(" > ")));
-    }
-    Ok(base)
 }
 
 /// The members of an object; `None` for anything else.
@@ -149,8 +155,12 @@ fn members(node: &Node) -> Option<&[Member]> {
     }
 }
 
-/// All members of `own`, after those of `base` whose keys `own` does not have. If either is no object, `own`.
+/// All members of `own`, after those of `base` whose keys `own` does not have. If either is no object, `own`, unless
+/// that cannot be read.
 fn union(base: &Node, own: &Node) -> Node {
+    if own.value == Tree::Broken {
+        return base.clone();
+    }
     let (Some(base), Some(own_members)) = (members(base), members(own)) else {
         return own.clone();
     };
@@ -180,6 +190,9 @@ fn merge(base: Node, own: &Node) -> Node {
 
 /// The base's entries in their order, each with the changes of its namesake, then the new ones.
 fn merge_shaders(base: &Node, own: &Node) -> Node {
+    if own.value == Tree::Broken {
+        return base.clone();
+    }
     let (Tree::List(base_entries), Tree::List(own_entries)) = (&base.value, &own.value) else {
         return own.clone();
     };
@@ -215,6 +228,8 @@ fn merge_entry(base: &Node, own: &Node) -> Node {
 }
 
 /// A file that cannot be read, as mistakes.
-pub(super) fn unreadable(path: &Path, reason: String) -> Mistakes {
-    Mistakes::one(Place::of_file(&path.display().to_string()), Problem::Unreadable(reason))
+pub(super) fn unreadable(path: &Path, unreadable: Unreadable) -> Mistakes {
+    let place = Place::of_file(&path.display().to_string());
+    let files = unreadable.path.into_iter().collect();
+    Mistakes { files, ..Mistakes::one(place, Problem::Unreadable(unreadable.reason)) }
 }

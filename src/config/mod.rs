@@ -1,30 +1,35 @@
 //! Style files: from JSON text to a [`Style`] in which every name is bound and every property has a value.
 //!
 //! The format is a superset of the JSON config file of [Prost2016 §3.1]. The text becomes a tree that knows the place
-//! of each key ([`syntax`]); a base is merged under it ([`extends`]); what is left is read by tables of [`Param`]s:
+//! of each key ([`parse`] makes the tree of [`syntax`], over every mistake on the way); a base is merged under it ([`extends`]); what is left is read by tables of [`Param`]s:
 //! those of `camera`, `geometry`, `light` and `transparency` lie here, those of shaders and post effects come with the
 //! [`Catalog`] that the engine hands over. Every mistake of a file is collected before any is reported, and a style with
 //! mistakes never becomes a `Style`.
 //!
 //! Nothing here knows of a GPU, a scene or a shader.
 
-mod blank;
+mod bare;
 pub mod camera;
 pub mod catalog;
 pub mod color;
 pub mod error;
+mod escape;
 pub mod extends;
+pub mod file;
 pub mod geometry;
 mod glob;
 mod glob_set;
 pub mod hint;
 pub mod length;
+mod lex;
 pub mod light;
 pub mod param;
+mod parse;
 mod read;
 pub mod rules;
 pub mod selector;
 pub mod shaders;
+mod slips;
 mod source;
 pub mod style;
 pub mod syntax;
@@ -38,6 +43,7 @@ pub use catalog::{Catalog, CatalogEntry, Role};
 pub use color::{BaseColor, Srgba};
 pub use error::{Mistake, Mistakes, Notice, Place, Problem, Warning};
 pub use extends::{Files, Loader};
+pub use file::Unreadable;
 pub use geometry::{AtomRadius, Geometry};
 pub use hint::Hint;
 pub use length::Length;
@@ -59,12 +65,17 @@ pub fn load(source: &Source, catalog: &Catalog<'_>) -> Result<Style, Mistakes> {
 /// Loads a style; `loader` finds the base that it extends.
 pub fn load_with(source: &Source, catalog: &Catalog<'_>, loader: &dyn Loader) -> Result<Style, Mistakes> {
     let mut texts = source::Texts::default();
-    let merged = extends::merge_all(source, loader, &mut texts)?;
+    let merged = extends::merge_all(source, loader, &mut texts);
     style::resolve(&texts, merged, catalog)
 }
 
-/// Loads a style file.
+/// Loads a style file; a base that it extends is a file beside it.
 pub fn load_file(path: &Path, catalog: &Catalog<'_>) -> Result<Style, Mistakes> {
-    let source = extends::read_file(path).map_err(|reason| extends::unreadable(path, reason))?;
-    load(&source, catalog)
+    load_file_with(path, catalog, &Files)
+}
+
+/// Loads a style file; `loader` finds the base that it extends.
+pub fn load_file_with(path: &Path, catalog: &Catalog<'_>, loader: &dyn Loader) -> Result<Style, Mistakes> {
+    let source = file::read_file(path).map_err(|reason| extends::unreadable(path, reason))?;
+    load_with(&source, catalog, loader)
 }

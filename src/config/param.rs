@@ -279,16 +279,17 @@ impl Param {
         }
     }
 
-    /// What a number must do to be allowed, such as `lie in 1 to 179 degrees`.
+    /// What a number must do to be allowed, such as `lie in 1 to 179 degrees`, or `be 0 or more`, which leaves unsaid
+    /// that no number of a style is beyond [`LARGEST`].
     pub fn allowed(&self) -> String {
         let bounds = match self.range {
             Some((lowest, highest)) if lowest.is_finite() && highest.is_finite() => {
                 format!("lie in {lowest} to {highest}")
             }
             Some((lowest, _)) if lowest.is_finite() => {
-                format!("be at least {lowest} (and at most {LARGEST})")
+                format!("be {lowest} or more")
             }
-            _ => format!("lie in -{LARGEST} to {LARGEST}"),
+            _ => format!("lie in -{LARGEST:e} to {LARGEST:e}"),
         };
         if self.unit.is_empty() { bounds } else { format!("{bounds} {}", self.unit) }
     }
@@ -367,7 +368,7 @@ mod tests {
     #[test]
     fn ranges_read_as_sentences() {
         assert_eq!(Param::number("fov", 35.0).range(1.0, 179.0).unit("degrees").allowed(), "lie in 1 to 179 degrees");
-        assert_eq!(Param::number("zoom", 1.0).at_least(0.1).allowed(), "be at least 0.1 (and at most 1000000000)");
-        assert_eq!(Param::number("x", 1.0).allowed(), "lie in -1000000000 to 1000000000");
+        assert_eq!(Param::number("zoom", 1.0).at_least(0.1).allowed(), "be 0.1 or more");
+        assert_eq!(Param::number("x", 1.0).allowed(), "lie in -1e9 to 1e9");
     }
 }

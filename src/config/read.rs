@@ -4,7 +4,7 @@ use super::color::{BaseColor, Srgba, css_names};
 use super::error::{Mistakes, Notice, Place, Problem, Warning};
 use super::hint::{Hint, quote};
 use super::length::Length;
-use super::param::{Kind, Param, Value};
+use super::param::{Kind, LARGEST, Param, Value};
 use super::source::Texts;
 use super::syntax::{Member, Node, Span, Tree};
 use super::values::Values;
@@ -20,10 +20,20 @@ pub(super) struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Notes a mistake.
+    /// Notes a mistake, unless it is one of a value that cannot be read, which was said.
     pub(super) fn wrong(&mut self, span: Span, problem: Problem) {
         let texts = self.texts;
+        if texts.holds_broken(span) {
+            return;
+        }
         self.mistakes.push(|| texts.place(span), problem);
+    }
+
+    /// Notes that something is missing, unless it may stand in a part of the style that cannot be read.
+    pub(super) fn missing(&mut self, span: Span, problem: Problem) {
+        if self.texts.are_whole() {
+            self.wrong(span, problem);
+        }
     }
 
     /// Notes a warning, once for each text of it.
@@ -98,6 +108,11 @@ impl Reader<'_> {
         member: &Member,
         allowed: impl IntoIterator<Item = &'static str>,
     ) {
+        // Where a bracket is missing, a key may only have come into the wrong object.
+        let is_of_style = super::style::KEYS.contains(&member.key.as_str());
+        if is_of_style && !self.texts.0[member.key_span.file as usize].is_closed {
+            return;
+        }
         let key = member.key.clone();
         let hint = self.hint(|| Hint::new(&key, allowed));
         self.wrong(member.key_span, Problem::UnknownKey { owner: owner.to_owned(), key, hint });
@@ -142,10 +157,18 @@ fn out_of_range(param: &Param, value: f64, allowed: String) -> Problem {
     Problem::OutOfRange { name: param.name.to_owned(), value, allowed }
 }
 
+/// What a number must do that lies outside the range which `allowed` tells; an open range ends somewhere, too.
+fn due(number: f64, allowed: String) -> String {
+    match number {
+        n if n > LARGEST && allowed.ends_with("or more") => format!("be at most {LARGEST:e}"),
+        _ => allowed,
+    }
+}
+
 fn number(param: &Param, node: &Node, expected: &str) -> Result<f64, Wrong> {
     match node.value {
         Tree::Number(n) if param.allows(n) => Ok(n),
-        Tree::Number(n) => Err((node.span, out_of_range(param, n, param.allowed()))),
+        Tree::Number(n) => Err((node.span, out_of_range(param, n, due(n, param.allowed())))),
         _ => Err((node.span, wrong_type(param.name, expected, node))),
     }
 }
@@ -170,8 +193,11 @@ fn length(param: &Param, node: &Node) -> Result<Length, Wrong> {
     if (lowest..=highest).contains(&length.number()) {
         return Ok(length);
     }
-    let allowed = format!("lie in {lowest} to {highest} {}", length.unit());
-    Err((node.span, out_of_range(param, length.number(), allowed)))
+    let allowed = match (lowest, highest) {
+        (0.0, LARGEST) => "be 0 or more".to_owned(),
+        (lowest, highest) => format!("lie in {lowest:e} to {highest:e} {}", length.unit()),
+    };
+    Err((node.span, out_of_range(param, length.number(), due(length.number(), allowed))))
 }
 
 fn choice_or_length(param: &Param, of: &'static [&'static str], node: &Node) -> Result<Value, Wrong> {

@@ -86,7 +86,7 @@ impl<'a> Shaders<'a> {
         }
         let (name, shader) = (entry.get("name"), entry.get("shader"));
         if name.is_none() && shader.is_none() {
-            reader.wrong(entry.span, Problem::NamelessShader);
+            reader.missing(entry.span, Problem::NamelessShader);
             return None;
         }
         let name = match name {
@@ -202,7 +202,7 @@ impl<'a> Shaders<'a> {
         let Some(entry) = self.catalog.get(name) else {
             let what = if role == Role::Object { "shader" } else { "post effect" };
             let hint = reader.hint(|| self.names(name, role));
-            reader.wrong(node.span, Problem::UnknownName { what, name: name.to_owned(), hint });
+            reader.missing(node.span, Problem::UnknownName { what, name: name.to_owned(), hint });
             return None;
         };
         if !self.check_role(reader, node, name, entry.role, role) {
@@ -260,5 +260,5 @@ impl<'a> Shaders<'a> {
 }
 
 fn missing(reader: &mut Reader<'_>, entry: &Node, key: &'static str, hint: Hint) {
-    reader.wrong(entry.span, Problem::MissingKey { owner: "this shader entry".to_owned(), key, hint });
+    reader.missing(entry.span, Problem::MissingKey { owner: "this shader entry".to_owned(), key, hint });
 }

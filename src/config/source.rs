@@ -37,17 +37,18 @@ impl Source {
     }
 }
 
-/// Where lines and characters begin in a text.
+/// Where lines and characters begin in a text. In 32 bits, which hold [`super::syntax::MAX_BYTES`]: a hostile file has as
+/// many lines as bytes.
 #[derive(Debug)]
 pub(super) struct Positions {
-    line_starts: Vec<usize>,
+    line_starts: Vec<u32>,
     /// Characters that begin before each multiple of [`BLOCK`].
-    chars_before: Vec<usize>,
+    chars_before: Vec<u32>,
 }
 
 impl Positions {
     pub(super) fn new(text: &[u8]) -> Self {
-        let breaks = text.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at + 1);
+        let breaks = text.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at as u32 + 1);
         let mut chars_before = Vec::with_capacity(text.len() / BLOCK + 1);
         let mut count = 0;
         for block in text.chunks(BLOCK) {
@@ -61,27 +62,21 @@ impl Positions {
     /// Line and column of a byte, both from 1, the column in characters.
     pub(super) fn line_column(&self, text: &[u8], offset: usize) -> (u32, u32) {
         let offset = offset.min(text.len());
-        let line = self.line_starts.partition_point(|start| *start <= offset);
-        let start = self.line_starts[line - 1];
+        let line = self.line_starts.partition_point(|start| *start as usize <= offset);
+        let start = self.line_starts[line - 1] as usize;
         let column = self.chars_until(text, offset) - self.chars_until(text, start) + 1;
-        (line as u32, column as u32)
+        (line as u32, column)
     }
 
-    /// The byte at which a line (from 1) begins.
-    pub(super) fn line_start(&self, line: usize) -> usize {
-        let last = self.line_starts.len() - 1;
-        self.line_starts[line.saturating_sub(1).min(last)]
-    }
-
-    fn chars_until(&self, text: &[u8], offset: usize) -> usize {
+    fn chars_until(&self, text: &[u8], offset: usize) -> u32 {
         let block = offset / BLOCK;
         self.chars_before[block] + count_chars(&text[block * BLOCK..offset])
     }
 }
 
 /// Characters that begin in these bytes of UTF-8.
-fn count_chars(bytes: &[u8]) -> usize {
-    bytes.iter().filter(|byte| **byte & 0xC0 != 0x80).count()
+fn count_chars(bytes: &[u8]) -> u32 {
+    bytes.iter().filter(|byte| **byte & 0xC0 != 0x80).count() as u32
 }
 
 /// A text with its positions and, once parsed, its own tree.
@@ -91,6 +86,12 @@ pub(super) struct Text {
     pub(super) text: String,
     pub(super) positions: Positions,
     pub(super) root: Node,
+    /// The values that cannot be read, as ranges of bytes in order.
+    pub(super) broken: Vec<(u32, u32)>,
+    /// Whether all of it could be read, and what it extends. If not, what seems to be missing may be there all the same.
+    pub(super) is_whole: bool,
+    /// Whether every bracket is closed where it should be. If not, a key may have come into the wrong object.
+    pub(super) is_closed: bool,
 }
 
 impl Text {
@@ -107,6 +108,12 @@ impl Text {
         }
     }
 
+    /// Whether a value cannot be read, or a part of it.
+    pub(super) fn holds_broken(&self, span: Span) -> bool {
+        let from = self.broken.partition_point(|(start, _)| *start < span.start);
+        self.broken.get(from).is_some_and(|(start, _)| *start == span.start || *start < span.end)
+    }
+
     /// Line and column alone.
     pub(super) fn line_column(&self, span: Span) -> (u32, u32) {
         self.positions.line_column(self.text.as_bytes(), span.start as usize)
@@ -121,6 +128,16 @@ impl Texts {
     /// The full place of a key or value.
     pub(super) fn place(&self, span: Span) -> Place {
         self.0[span.file as usize].place(span)
+    }
+
+    /// Whether a value cannot be read, or a part of it, so that what is wrong with it may only follow from that.
+    pub(super) fn holds_broken(&self, span: Span) -> bool {
+        self.0[span.file as usize].holds_broken(span)
+    }
+
+    /// Whether the style and all its bases could be read whole.
+    pub(super) fn are_whole(&self) -> bool {
+        self.0.iter().all(|text| text.is_whole)
     }
 
     /// Line and column alone.
@@ -157,7 +174,7 @@ fn path_at(root: &Node, offset: u32) -> String {
                 path.push_str(&format!("[{i}]"));
                 node = &items[i];
             }
-            Tree::Null | Tree::Bool(_) | Tree::Number(_) | Tree::Text(_) => return path,
+            Tree::Null | Tree::Bool(_) | Tree::Number(_) | Tree::Text(_) | Tree::Broken => return path,
         }
         if offset <= node.span.start {
             return path;

@@ -50,7 +50,7 @@ const BROKEN: &[(&str, &str)] = &[
     ),
     (
         r#"{ "camera": { "fov": 1e999 } }"#,
-        "s.json:1:26: this number is too large",
+        r#"s.json:1:22: this number is too large"#,
     ),
     (
         r#"{ "camera": { "orthographic": "yes" } }"#,
@@ -114,7 +114,7 @@ const BROKEN: &[(&str, &str)] = &[
     ),
     (
         r#"{ "geometry": { "bond_radius": "-1A" } }"#,
-        r#"s.json:1:32 (geometry.bond_radius): "bond_radius" is -1, but must lie in 0 to 1000000000 A"#,
+        r#"s.json:1:32 (geometry.bond_radius): "bond_radius" is -1, but must be 0 or more"#,
     ),
     (
         r#"{ "geometry": { "bond_radius": true } }"#,
@@ -209,11 +209,11 @@ s.json:1:17 (shaders[0].lights): a shader entry has no "lights"; allowed: name, 
     ),
     (
         r#"{ "shaders": [{ "name": "a" }] }"#,
-        r#"s.json:1:15 (shaders[0]): this shader entry needs "shader"; allowed: basic, toon, unlit"#,
+        r#"s.json:1:15 (shaders[0]): this shader entry needs "shader": add it; allowed: basic, toon, unlit"#,
     ),
     (
         r#"{ "shaders": [{ "shader": "toon" }] }"#,
-        r#"s.json:1:15 (shaders[0]): this shader entry needs "name""#,
+        r#"s.json:1:15 (shaders[0]): this shader entry needs "name": add it"#,
     ),
     (
         r#"{ "shaders": [{ "name": "a", "shader": "tone" }] }"#,
@@ -273,31 +273,31 @@ s.json:1:17 (shaders[0].lights): a shader entry has no "lights"; allowed: name, 
     ),
     (
         r#"{ "camera": { "fov": 30 }"#,
-        "s.json:1:25: the file ends, but the { at 1:1 is not closed",
+        r#"s.json:1:25: the file ends, but the { at 1:1 is not closed: write } at its end"#,
     ),
     (
         r#"{ "camera": { "fov": 30 ] }"#,
-        "s.json:1:25: a comma or } is due here",
+        r#"s.json:1:25: the { at 1:13 is closed by ]: write } in its place"#,
     ),
     (
         r#"{ "camera": {} "mapping": {} }"#,
-        "s.json:1:16: a comma or } is due here",
+        r#"s.json:1:16: a comma is missing before this key"#,
     ),
     (
         r#"{ "camera": { "fov": } }"#,
-        "s.json:1:22: a value is due here (a text needs quotes)",
+        r#"s.json:1:15: "fov" has no value: write one after the colon"#,
     ),
     (
         r#"{ "camera": { "fov": 030 } }"#,
-        "s.json:1:23: numbers are written like 12, -0.5 or 1e-3",
+        r#"s.json:1:22: write 30 instead of 030"#,
     ),
     (
         "{ 'camera': {} }",
-        "s.json:1:3: a key in quotes is due here",
+        r#"s.json:1:3: a text stands in straight double quotes: write "camera""#,
     ),
     (
         r#"{ "camera": {} } {}"#,
-        "s.json:1:18: there is more text after the end of the style",
+        r#"s.json:1:18: there is more text after the end of the style: remove it"#,
     ),
     (
         r#"{ "camera": /* open }"#,
@@ -305,28 +305,28 @@ s.json:1:17 (shaders[0].lights): a shader entry has no "lights"; allowed: name, 
     ),
     (
         r#"{ "camera": {},, }"#,
-        "s.json:1:16: a key in quotes is due here",
+        r#"s.json:1:16: there is nothing between these commas: remove one, or write what is missing"#,
     ),
     (
         "[,]",
-        "s.json:1:2: a value is due here (a text needs quotes)",
+        r#"s.json:1:2: there is nothing before this comma: remove it, or write what is missing"#,
     ),
     (
         r#"{ "mapping": { "atom": "to
 on" } }"#,
-        r#"s.json:1:27: a text cannot hold a line break or control character: close it with " on its line"#,
+        r#"s.json:1:24: a text cannot go over a line break: write it in one line, with \n for a break"#,
     ),
     (
         r#"{ "mapping": { "a\qb": null } }"#,
-        r#"s.json:1:19: there is no such \ escape (a backslash itself is written \\)"#,
+        r#"s.json:1:18: there is no escape \q: a backslash itself is written \\"#,
     ),
     (
         r#"{ "mapping": { "\ud800": null } }"#,
-        r#"s.json:1:23: this \u escape is no character"#,
+        r#"s.json:1:17: this \u escape is no character: write the character itself, or \\ for a backslash"#,
     ),
     (
         "// nothing",
-        "s.json:1:10: the file has no value, only comments",
+        r#"s.json:1:11: the file holds only comments: the smallest style is {}"#,
     ),
     (
         "",
@@ -351,7 +351,8 @@ s.json:3:24 (mapping.atom): no shader is called "x"; allowed: basic, toon, unlit
     ),
     (
         r#"{"a":[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]}"#,
-        "s.json:1:69: lists and objects are nested deeper than 64 levels",
+        r#"s.json:1:2 (a): a style has no "a"; allowed: $schema, version, extends, camera, geometry, mapping, shaders, lights, transparency
+s.json:1:69: lists and objects are nested deeper than 64 levels"#,
     ),
     (
         r#"{ "geometry": { "atom": true } }"#,
@@ -359,7 +360,7 @@ s.json:3:24 (mapping.atom): no shader is called "x"; allowed: basic, toon, unlit
     ),
     (
         r#"{ "shaders": [{ "name": "a", "shader": "toon", "properties": { "hull_size": "-2pt" } }] }"#,
-        r#"s.json:1:77 (shaders[0].properties.hull_size): "hull_size" is -2, but must lie in 0 to 1000000000 pt"#,
+        r#"s.json:1:77 (shaders[0].properties.hull_size): "hull_size" is -2, but must be 0 or more"#,
     ),
     (
         r#"{ "shaders": [{ "name": "a", "shader": "curvatur" }] }"#,
@@ -367,7 +368,7 @@ s.json:3:24 (mapping.atom): no shader is called "x"; allowed: basic, toon, unlit
     ),
     (
         r#"{ "camera": { "fov": nul } }"#,
-        "s.json:1:25: only true, false and null stand without quotes",
+        r#"s.json:1:22: write null instead of nul"#,
     ),
     (
         r#"{ "mapping": { "post_effects": ["toon"] }, "shaders": [{ "name": "soft", "shader": "ssaoPost" }] }"#,
@@ -375,7 +376,7 @@ s.json:3:24 (mapping.atom): no shader is called "x"; allowed: basic, toon, unlit
     ),
     (
         r#"{ "camera": { "fov" 30 } }"#,
-        "s.json:1:21: a colon is due here",
+        r#"s.json:1:21: a colon is missing between "fov" and this value"#,
     ),
 ];
 
@@ -406,7 +407,7 @@ fn a_file_beyond_the_limit_is_refused_whole() {
 fn depth_is_bounded() {
     let deep = |depth: usize| messages(&format!("{{\"a\":{}{}}}", "[".repeat(depth), "]".repeat(depth)));
     assert!(deep(63).contains("a style has no \"a\""));
-    assert_eq!(deep(64), "s.json:1:69: lists and objects are nested deeper than 64 levels");
+    assert!(deep(64).ends_with("\ns.json:1:69: lists and objects are nested deeper than 64 levels"));
     assert!(messages(&"[".repeat(1_000_000)).contains("nested deeper"));
 }
 

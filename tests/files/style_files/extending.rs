@@ -1,5 +1,8 @@
 //! Styles that extend others.
 
+use std::path::PathBuf;
+
+use restyle::config::syntax::MAX_BYTES;
 use restyle::config::{ObjectKind, Source, Style, load, load_file, load_with};
 
 use super::catalog::EARLY;
@@ -82,7 +85,7 @@ fn bases_that_cannot_be_used_say_why() {
         ),
         ("{ \"extends\": \"none\" }", "base:1:14 (extends): cannot extend \"none\": there is no such look"),
         ("[]", "base:1:1: \"style\" must be an object, not an empty list"),
-        ("{", "base:1:1: the file ends, but the { at 1:1 is not closed"),
+        ("{", "base:1:1: the file ends, but the { at 1:1 is not closed: write } at its end"),
         (
             "{ \"version\": 2 }",
             "base:1:14 (version): \"version\" is 2, but must be 1: this program reads no other version of style files",
@@ -100,7 +103,10 @@ fn a_long_chain_is_refused() {
         Ok(Source::new(format!("base{}", count.get()), "{ \"extends\": \"next\" }"))
     };
     let mistakes = load_with(&Source::new("own.json", "{ \"extends\": \"next\" }"), &EARLY, &loader).unwrap_err();
-    assert!(mistakes.to_string().ends_with("more than 16 styles extend one another"), "{mistakes}");
+    assert!(
+        mistakes.to_string().ends_with("more than 16 styles extend one another: make the chain shorter"),
+        "{mistakes}"
+    );
 }
 
 #[test]
@@ -124,4 +130,185 @@ fn files_are_found_beside_the_file_that_names_them() {
     assert!(circle.to_string().contains("in a circle"), "{circle}");
     assert_eq!(circle.files.len(), 3);
     assert!(lonely.to_string().contains("only a style that is a file can extend"));
+}
+
+#[test]
+fn a_style_without_its_base_is_checked_itself() {
+    // What the base might hold is no mistake: the shader of `a`, and what is called `flat`.
+    let own = r#"{ "extends": "none", "camera": { "zoom": 0 }, "mapping": { "atom": "flat", "atm": null },
+        "shaders": [{ "name": "a", "properties": { "steps": 3 } }, { "name": "b", "shader": "tone" }] }"#;
+    assert_eq!(
+        extended(own, &[]).unwrap_err(),
+        "own.json:1:14 (extends): cannot extend \"none\": there is no such look\n\
+         own.json:1:42 (camera.zoom): \"zoom\" is 0, but must lie in 0.01 to 1000\n\
+         own.json:1:76 (mapping.atm): selector \"atm\": there is no type \"atm\"; did you mean \"atom\"? allowed: atom, connector, ribbon, surface, mesh, *, post_effects\n\
+         own.json:2:93 (shaders[1].shader): no shader is called \"tone\"; did you mean \"toon\"? allowed: basic, toon, unlit"
+    );
+}
+
+#[test]
+fn every_mistake_of_all_bases_is_said_at_once() {
+    let own =
+        "{ \"extends\": \"middle\", \"camera\": { \"zoom\": 0 \"fov\": .5 }, \"mapping\": { \"atom\": \"flat\" } }";
+    let middle = "{ \"extends\": \"base\", \"lights\": [{ \"strength\": 2 }], \"geometry\": { scale: 0 } }";
+    let base = "{ 'camera': { \"exposure\": 50 }, \"shaders\": [{ \"name\": \"flat, \"shader\": \"toon\" }";
+    assert_eq!(
+        extended(own, &[("middle", middle), ("base", base)]).unwrap_err(),
+        "own.json:1:44 (camera.zoom): \"zoom\" is 0, but must lie in 0.01 to 1000\n\
+         own.json:1:46: a comma is missing before this key\n\
+         own.json:1:53: write 0.5 instead of .5\n\
+         middle:1:47 (lights[0].strength): \"strength\" is 2, but must lie in 0 to 1\n\
+         middle:1:67: a key needs quotes: write \"scale\"\n\
+         middle:1:74 (geometry.scale): \"scale\" is 0, but must lie in 0.001 to 100\n\
+         base:1:3: a text stands in straight double quotes: write \"camera\"\n\
+         base:1:27 (camera.exposure): \"exposure\" is 50, but must lie in -10 to 10 stops\n\
+         base:1:55: this text is not closed: write \"flat\"\n\
+         base:1:79: the file ends, but the [ at 1:44 is not closed: write ] at its end"
+    );
+}
+
+#[test]
+fn bases_of_which_nothing_can_be_read_leave_the_style_to_be_checked() {
+    let own = r#"{ "extends": "base", "camera": { "zoom": 0 }, "mapping": { "atom": "flat" } }"#;
+    let zoom = "own.json:1:42 (camera.zoom): \"zoom\" is 0, but must lie in 0.01 to 1000";
+    for (base, message) in [
+        ("[7]", "base:1:1: \"style\" must be an object, not a list of 1 value"),
+        ("", "base: the file is empty: the smallest style is {}"),
+        ("// all of it", "base:1:13: the file holds only comments: the smallest style is {}"),
+        ("\u{0}{", "base:1:1: this is not UTF-8 text: save the file as UTF-8"),
+        (
+            "{ \"version\": 2, \"camra\": {} }",
+            "base:1:14 (version): \"version\" is 2, but must be 1: this program reads no other version of style files",
+        ),
+    ] {
+        let said = extended(own, &[("base", base)]).unwrap_err();
+        let mut lines: Vec<&str> = said.lines().collect();
+        lines.sort_unstable();
+        assert_eq!(
+            lines,
+            {
+                let mut due = [zoom, message];
+                due.sort_unstable();
+                due
+            },
+            "{base}"
+        );
+    }
+    // A style of which nothing can be read leaves nothing to extend.
+    assert_eq!(extended("\u{0}", &[]).unwrap_err(), "own.json:1:1: this is not UTF-8 text: save the file as UTF-8");
+    assert_eq!(
+        extended("{ \"extends\": base }", &[]).unwrap_err(),
+        "own.json:1:14: a text needs quotes: write \"base\""
+    );
+}
+
+/// A folder for files of one test, which goes with it.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let folder = std::env::temp_dir().join(format!("restyle_{name}_{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("the temporary folder takes folders");
+        // As the loader sees it, without links.
+        Self(folder.canonicalize().expect("it was just made"))
+    }
+
+    fn write(&self, name: &str, text: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.0.join(name);
+        std::fs::write(&path, text).expect("the folder takes files");
+        path
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+#[test]
+fn files_that_are_looked_for_are_told_whether_they_are_there_or_not() {
+    let folder = Folder::new("looked_for");
+    let own = folder.write("own.json", "{ \"extends\": \"middle.json\" }");
+    let middle = folder.write("middle.json", "{ \"extends\": \"none.json\" }");
+    let mistakes = load_file(&own, &EARLY).unwrap_err();
+    assert_eq!(mistakes.files, [own.clone(), middle, folder.0.join("none.json")]);
+    assert!(mistakes.to_string().ends_with("cannot extend \"none.json\": there is no such file"), "{mistakes}");
+    let absent = folder.0.join("absent.json");
+    assert_eq!(load_file(&absent, &EARLY).unwrap_err().files, [absent]);
+}
+
+#[test]
+fn paths_that_are_no_style_files_say_why() {
+    let folder = Folder::new("paths");
+    std::fs::create_dir(folder.0.join("folder")).unwrap();
+    folder.write("empty.json", "");
+    let large = std::fs::File::create(folder.0.join("large.json")).unwrap();
+    large.set_len(100 << 20).unwrap();
+    // With its byte-order mark, a style may be as long as this and no longer.
+    let mut longest = b"\xEF\xBB\xBF{}".to_vec();
+    longest.resize(MAX_BYTES + 3, b' ');
+    folder.write("longest.json", &longest);
+    for (base, reason) in [
+        ("none.json", "cannot extend \"none.json\": there is no such file"),
+        ("empty.json/x.json", "cannot extend \"empty.json/x.json\": a part of this path is a file, not a folder"),
+        ("folder", "cannot extend \"folder\": this is a folder, not a style file"),
+        ("..", "cannot extend \"..\": this is a folder, not a style file"),
+        ("", "cannot extend \"\": the name is empty: write the name of a style file"),
+        ("a\\u0000b", "cannot extend \"a\\u{0}b\": no file name can hold the character U+0000: remove it"),
+        ("large.json", "cannot extend \"large.json\": a style is at most 16 MB, and this file is larger"),
+        ("own.json", "in a circle: "),
+        ("./folder/../own.json", "in a circle: "),
+        ("empty.json", "empty.json: the file is empty: the smallest style is {}"),
+    ] {
+        let own = folder.write("own.json", format!("{{ \"extends\": \"{base}\" }}"));
+        let mistakes = load_file(&own, &EARLY).unwrap_err().to_string();
+        assert_eq!(mistakes.lines().count(), 1, "{mistakes}");
+        assert!(mistakes.contains(reason), "{mistakes}");
+    }
+    let long = "x".repeat(5000);
+    let own = folder.write("own.json", format!("{{ \"extends\": \"{long}\" }}"));
+    assert!(load_file(&own, &EARLY).unwrap_err().to_string().contains("this name is too long"));
+    let own = folder.write("own.json", "{ \"extends\": \"longest.json\" }");
+    assert!(load_file(&own, &EARLY).is_ok());
+}
+
+#[cfg(unix)]
+#[test]
+fn links_are_followed_and_never_in_circles() {
+    use std::os::unix::fs::symlink;
+    let folder = Folder::new("links");
+    let own = folder.write("own.json", "{ \"extends\": \"link.json\" }");
+    let link = folder.0.join("link.json");
+    let said_with_link_to = |target: &str| {
+        symlink(target, &link).unwrap();
+        let said = load_file(&own, &EARLY).map_err(|mistakes| mistakes.to_string());
+        std::fs::remove_file(&link).unwrap();
+        said.map(|style| style.camera.fov)
+    };
+    folder.write("base.json", "{ \"camera\": { \"fov\": 20 } }");
+    assert_eq!(said_with_link_to("base.json"), Ok(20.0));
+    assert!(said_with_link_to("own.json").unwrap_err().contains("in a circle"));
+    assert!(said_with_link_to("none.json").unwrap_err().ends_with("this is a link to a file that is not there"));
+    assert!(said_with_link_to("link.json").unwrap_err().contains("this link cannot be followed"));
+}
+
+#[test]
+fn a_file_that_never_settles_is_read_all_the_same() {
+    use std::io::Write;
+    use std::sync::atomic::{AtomicBool, Ordering};
+    let folder = Folder::new("unsettled");
+    let own = folder.write("own.json", "{}");
+    let is_done = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            let mut file = std::fs::OpenOptions::new().append(true).open(&own).unwrap();
+            while !is_done.load(Ordering::Relaxed) {
+                file.write_all(b" ").unwrap();
+            }
+        });
+        let loaded: Vec<bool> = (0..20).map(|_| load_file(&own, &EARLY).is_ok()).collect();
+        is_done.store(true, Ordering::Relaxed);
+        assert_eq!(loaded, [true; 20]);
+    });
 }

@@ -6,3 +6,4 @@ mod extending;
 mod loading;
 mod mutations;
 mod resolving;
+mod syntax;
