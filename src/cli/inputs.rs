@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::{Failure, tell};
-use crate::config::{self, Catalog, Source, Style};
+use super::{Failure, messages, print_message, tell};
+use crate::config::{self, Catalog, Mistakes, Place, Problem, Source, Style};
 use crate::engine;
 use crate::scene::{LoadOptions, ModelChoice, Scene};
 use crate::shipped::{self, Shipped};
@@ -55,20 +55,33 @@ pub(crate) fn load_scene(name: &str, options: LoadOptions) -> Result<Loaded, Fai
 
 /// Loads a style file, or a shipped look by its name.
 pub(crate) fn load_style(name: &str) -> Result<Style, Failure> {
+    read_style(name).map_err(Failure::from)
+}
+
+/// The same, with its mistakes.
+pub(crate) fn read_style(name: &str) -> Result<Style, Mistakes> {
     let entries = engine::catalog();
     let catalog = Catalog { shaders: &entries, kinds: engine::DRAWN_KINDS };
     let path = Path::new(name);
-    let style = match shipped::find(shipped::LOOKS, name) {
+    match shipped::find(shipped::LOOKS, name) {
         Some(look) if !is_shadowed(path) => config::load(&Source::new(look.file, look.bytes), &catalog),
-        None if !path.exists() => return Err(unknown("look", name, shipped::LOOKS)),
+        None if !path.exists() => {
+            let reason = unknown_reason("look", name, shipped::LOOKS);
+            Err(Mistakes::one(Place::of_file(name), Problem::Unreadable(reason)))
+        }
         _ => config::load_file(path, &catalog),
-    };
-    style.map_err(Failure::input)
+    }
 }
 
 /// Prints what a style says that this version passes over, and what a scene's file had mended.
 pub(crate) fn print_warnings(style: &Style, scene: &Scene, scene_name: &str) {
-    style.warnings.iter().map(ToString::to_string).chain(scene_warnings(scene, scene_name)).for_each(tell);
+    style_warnings(style).iter().for_each(|warning| print_message(warning));
+    scene_warnings(scene, scene_name).into_iter().for_each(tell);
+}
+
+/// What a style asks for and does not get, each with its source line, clean.
+pub(crate) fn style_warnings(style: &Style) -> Vec<String> {
+    messages::of_warnings(&style.warnings, style.unlisted_warnings, &style.texts)
 }
 
 /// What a scene's file had mended, one line a kind.
@@ -78,6 +91,10 @@ pub(crate) fn scene_warnings(scene: &Scene, scene_name: &str) -> Vec<String> {
 
 /// A look or molecule that is not shipped, with those that are.
 pub(crate) fn unknown(what: &str, name: &str, among: &'static [Shipped]) -> Failure {
+    Failure::input(format!("{name:?}: {}", unknown_reason(what, name, among)))
+}
+
+fn unknown_reason(what: &str, name: &str, among: &'static [Shipped]) -> String {
     let nearest = among
         .iter()
         .map(|shipped| (strsim::damerau_levenshtein(shipped.name, name), shipped.name))
@@ -85,7 +102,7 @@ pub(crate) fn unknown(what: &str, name: &str, among: &'static [Shipped]) -> Fail
         .filter(|(distance, nearest)| *distance <= nearest.len() / 2);
     let hint = nearest.map_or(String::new(), |(_, nearest)| format!("did you mean {nearest:?}? "));
     let names: Vec<&str> = among.iter().map(|shipped| shipped.name).collect();
-    Failure::input(format!("{name:?}: no such file, and no {what} of this name; {hint}shipped: {}", names.join(", ")))
+    format!("no such file, and no {what} of this name; {hint}shipped: {}", names.join(", "))
 }
 
 /// Refuses outputs that would overwrite an input or one another. Devices and pipes take more than one.

@@ -4,13 +4,14 @@
 //! `mapping` and the objects `camera`, `geometry` and `transparency` merge by key; lists are replaced. A key that is
 //! written again counts as written last, so that among equal selectors a base comes before what extends it.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use super::diagnostic::SourceTexts;
 use super::error::{Mistakes, Place, Problem};
 use super::source::{Source, Texts};
 use super::style::check_version;
-use super::syntax::{self, MAX_BYTES, Member, Node, Tree};
+use super::syntax::{self, MAX_BYTES, Member, Node, Span, Tree};
 
 /// Longest chain of bases. Ours: nobody keeps track of more.
 const MAX_BASES: usize = 16;
@@ -69,7 +70,12 @@ pub(super) struct Merged {
     /// What is wrong so far.
     pub(super) mistakes: Mistakes,
     pub(super) files: Vec<PathBuf>,
+    pub(super) replaced: Replaced,
 }
+
+/// What each value or entry of a style replaces or changes in its base.
+#[derive(Debug, Default)]
+pub(super) struct Replaced(pub(super) Vec<(Span, Span)>);
 
 /// Parses a style and its bases into `texts` and merges them.
 pub(super) fn merge_all(source: &Source, loader: &dyn Loader, texts: &mut Texts) -> Result<Merged, Mistakes> {
@@ -80,12 +86,14 @@ pub(super) fn merge_all(source: &Source, loader: &dyn Loader, texts: &mut Texts)
     // Without its base, half a style would be full of names that nothing explains.
     if !complete {
         mistakes.files = files;
+        mistakes.texts = SourceTexts::of_sources(&chain);
         return Err(mistakes);
     }
     let mut roots = texts.0.iter().rev().map(|text| &text.root);
     let first = roots.next().cloned().expect("the style itself was parsed");
-    let root = roots.fold(first, merge);
-    Ok(Merged { root, mistakes, files })
+    let mut replaced = Replaced::default();
+    let root = roots.fold(first, |base, own| merge(base, own, &mut replaced));
+    Ok(Merged { root, mistakes, files, replaced })
 }
 
 /// Parses the last source of the chain, then its base, and so on; false if one of them cannot be used.
@@ -150,18 +158,24 @@ fn members(node: &Node) -> Option<&[Member]> {
 }
 
 /// All members of `own`, after those of `base` whose keys `own` does not have. If either is no object, `own`.
-fn union(base: &Node, own: &Node) -> Node {
+fn union(base: &Node, own: &Node, replaced: &mut Replaced) -> Node {
     let (Some(base), Some(own_members)) = (members(base), members(own)) else {
         return own.clone();
     };
-    let keys: HashSet<&str> = own_members.iter().map(|member| member.key.as_str()).collect();
-    let kept = base.iter().filter(|member| !keys.contains(member.key.as_str()));
+    let keys: HashMap<&str, &Member> = own_members.iter().map(|member| (member.key.as_str(), member)).collect();
+    let kept = base.iter().filter(|member| match keys.get(member.key.as_str()) {
+        Some(own) => {
+            replaced.0.extend([(own.key_span, member.key_span), (own.value.span, member.value.span)]);
+            false
+        }
+        None => true,
+    });
     Node { value: Tree::Object(kept.chain(own_members).cloned().collect()), span: own.span }
 }
 
 /// A whole style over its base.
-fn merge(base: Node, own: &Node) -> Node {
-    let mut merged = union(&base, own);
+fn merge(base: Node, own: &Node, replaced: &mut Replaced) -> Node {
+    let mut merged = union(&base, own, replaced);
     let Tree::Object(merged_members) = &mut merged.value else {
         return merged;
     };
@@ -170,8 +184,8 @@ fn merge(base: Node, own: &Node) -> Node {
             continue;
         };
         match member.key.as_str() {
-            "camera" | "geometry" | "transparency" | "mapping" => member.value = union(base, own),
-            "shaders" => member.value = merge_shaders(base, own),
+            "camera" | "geometry" | "transparency" | "mapping" => member.value = union(base, own, replaced),
+            "shaders" => member.value = merge_shaders(base, own, replaced),
             _ => {}
         }
     }
@@ -179,7 +193,7 @@ fn merge(base: Node, own: &Node) -> Node {
 }
 
 /// The base's entries in their order, each with the changes of its namesake, then the new ones.
-fn merge_shaders(base: &Node, own: &Node) -> Node {
+fn merge_shaders(base: &Node, own: &Node, replaced: &mut Replaced) -> Node {
     let (Tree::List(base_entries), Tree::List(own_entries)) = (&base.value, &own.value) else {
         return own.clone();
     };
@@ -191,24 +205,25 @@ fn merge_shaders(base: &Node, own: &Node) -> Node {
         // Taken out, so that a second namesake stays an entry of its own, which is a mistake that is found later.
         let namesake = entry.get("name").and_then(Node::text).and_then(|name| of_name.remove(name));
         match namesake {
-            Some(i) => entries[i] = merge_entry(&entries[i], entry),
+            Some(i) => entries[i] = merge_entry(&entries[i], entry, replaced),
             None => entries.push(entry.clone()),
         }
     }
     Node { value: Tree::List(entries), span: own.span }
 }
 
-fn merge_entry(base: &Node, own: &Node) -> Node {
+fn merge_entry(base: &Node, own: &Node, replaced: &mut Replaced) -> Node {
+    replaced.0.push((own.span, base.span));
     let shader_of = |entry: &Node| entry.get("shader").and_then(Node::text).map(str::to_owned);
     if own.get("shader").is_some() && shader_of(own) != shader_of(base) {
         return own.clone();
     }
-    let mut merged = union(base, own);
+    let mut merged = union(base, own, replaced);
     if let (Tree::Object(members), Some(base), Some(own)) =
         (&mut merged.value, base.get("properties"), own.get("properties"))
     {
         for member in members.iter_mut().filter(|member| member.key == "properties") {
-            member.value = union(base, own);
+            member.value = union(base, own, replaced);
         }
     }
     merged

@@ -18,6 +18,8 @@ pub struct Built {
     pub list: DrawList,
     /// Their materials.
     pub materials: Materials,
+    /// The shaders of the style that draw something, each with its material.
+    pub material_of: BTreeMap<usize, u32>,
     /// Lengths, with the median radius of the drawn atoms.
     pub lengths: Lengths,
 }
@@ -127,7 +129,7 @@ pub fn build(molecule: &Molecule, style: &Style, exposure_factor: f32, height_px
             });
         }
     }
-    Built { list, materials: materials.materials, lengths }
+    Built { list, materials: materials.materials, material_of: materials.index_of, lengths }
 }
 
 fn connector_use<'a>(
