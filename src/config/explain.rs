@@ -166,10 +166,10 @@ fn shown(param: &Param, value: &Value) -> String {
     if param.unit.is_empty() { bare } else { format!("{bare} {}", param.unit) }
 }
 
-/// `toon`, or `curvature, drawn with basic`.
+/// `toon`, or `curvature, drawn with basic for now`.
 fn drawing(used: &ShaderUse) -> String {
     match used.stands_in_for {
-        Some(asked) => format!("{asked}, drawn with {} yet", used.shader),
+        Some(asked) => format!("{asked}, drawn with {} for now", used.shader),
         None if used.drawn => used.shader.to_owned(),
         None => format!("{}, not drawn yet", used.shader),
     }

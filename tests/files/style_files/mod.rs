@@ -2,6 +2,9 @@
 
 mod broken;
 mod catalog;
+mod explaining;
 mod extending;
 mod loading;
 mod mutations;
+mod source_lines;
+mod warnings;
