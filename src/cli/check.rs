@@ -5,7 +5,7 @@ use serde_json::{Value as Json, json};
 
 use super::messages::{self, clean};
 use super::{Failure, answer, inputs, print_message, tell};
-use crate::config::{Hint, Mistakes, Place, SourceTexts, Style, Warning, explain};
+use crate::config::{Hint, MOST_LISTED, Mistakes, Place, SourceTexts, Style, Warning, explain};
 use crate::engine::lint;
 use crate::scene::{LoadOptions, ModelChoice, Scene};
 
@@ -91,7 +91,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 
 fn check(name: &str, scene: Option<&Scene>) -> Findings {
     let mut style = inputs::read_style(name);
-    let (mut warnings, unlisted_warnings) = match &mut style {
+    let (mut warnings, mut unlisted_warnings) = match &mut style {
         Ok(style) => (std::mem::take(&mut style.warnings), style.unlisted_warnings),
         Err(mistakes) => (std::mem::take(&mut mistakes.warnings), mistakes.unlisted_warnings),
     };
@@ -102,6 +102,8 @@ fn check(name: &str, scene: Option<&Scene>) -> Findings {
         });
         let order = |place: &Place| (style.texts.position(&place.file), place.start);
         warnings.sort_by_key(|warning| order(&warning.place));
+        unlisted_warnings += warnings.len().saturating_sub(MOST_LISTED);
+        warnings.truncate(MOST_LISTED);
     }
     Findings { file: name.to_owned(), style, warnings, unlisted_warnings }
 }

@@ -60,14 +60,14 @@ impl SourceTexts {
         Self(texts.collect())
     }
 
-    /// The sources that are text, if not all of them could be parsed.
+    /// The sources, if not all of them could be parsed. What is no UTF-8 is right up to the first byte that is none,
+    /// where it is marked.
     pub(super) fn of_sources(sources: &[Source]) -> Self {
         let text = |source: &Source| {
             let bytes = source.text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&source.text);
-            let text = str::from_utf8(bytes).ok().filter(|text| text.len() <= super::syntax::MAX_BYTES)?;
-            Some((source.name.as_str().into(), text.into()))
+            (source.name.as_str().into(), String::from_utf8_lossy(bytes).into())
         };
-        Self(sources.iter().filter_map(text).collect())
+        Self(sources.iter().map(text).collect())
     }
 
     /// The text of a file, without its byte-order mark.

@@ -13,7 +13,7 @@ use super::hint::{Hint, number, quote};
 
 /// Most mistakes, and most warnings, that are listed; the rest is counted.
 /// Ours: more than a screen holds, and a bound on the work that a hostile file causes.
-pub(super) const MOST_LISTED: usize = 100;
+pub const MOST_LISTED: usize = 100;
 
 /// A place in a file: what a message points at.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -37,7 +37,7 @@ pub use camera::{Camera, Orient};
 pub use catalog::{Catalog, CatalogEntry, Role};
 pub use color::{BaseColor, Srgba};
 pub use diagnostic::{Severity, SourceTexts};
-pub use error::{Mistake, Mistakes, Notice, Place, Problem, Warning};
+pub use error::{MOST_LISTED, Mistake, Mistakes, Notice, Place, Problem, Warning};
 pub use extends::{Files, Loader};
 pub use geometry::{AtomRadius, Geometry};
 pub use hint::Hint;

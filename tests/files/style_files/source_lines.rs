@@ -47,6 +47,37 @@ fn wide_letters_move_the_marker_two_columns() {
 }
 
 #[test]
+fn a_wide_letter_is_marked_over_both_columns() {
+    assert_eq!(lines("{ \"\u{6c34}\": 1 }"), ["1 | { \"\u{6c34}\": 1 }\n  |   ^^^^"]);
+}
+
+#[test]
+fn what_is_no_utf8_is_marked_where_it_begins() {
+    assert_eq!(lines(b"{ \"x\": \"\xe9\" }"), ["1 | { \"x\": \"\u{fffd}\" }\n  |         ^"]);
+}
+
+#[test]
+fn every_place_of_a_text_can_be_shown() {
+    let text = "{\t\"a\u{301}\u{6c34}\u{1f469}\u{200d}\u{1f52c}\": [\r\n\n \u{5d0}\u{202e}\u{1b} /* ".to_owned()
+        + &"x\u{1f600}".repeat(80)
+        + " */ \"\r\" ]}\n";
+    let mistakes = load(&Source::new("s.json", text.as_str()), &EARLY).unwrap_err();
+    let mut place = mistakes.list[0].place.clone();
+    for start in 0..=text.len() + 1 {
+        for end in [start.saturating_sub(1), start, start + 1, start + 7, text.len() + 2] {
+            (place.start, place.end, place.line) = (start, end, 7);
+            let Some(shown) = mistakes.texts.source_line(&place, Severity::Warning, false) else {
+                assert!(start > text.len());
+                continue;
+            };
+            let (line, marker) = shown.split_once('\n').unwrap();
+            assert!(line.starts_with("7 |") && !line.contains(|c: char| c.is_control()), "{line:?}");
+            assert!(marker.starts_with("  |") && marker.ends_with('^'), "{start} to {end}: {marker:?}");
+        }
+    }
+}
+
+#[test]
 fn right_to_left_letters_stay_and_marks_that_turn_text_go() {
     let shown = lines("{ \"$schema\": \"\u{5e9}\u{5dc}\u{202e}\u{2066}\u{200f}\", \"fov\": 1 }");
     let expected =
