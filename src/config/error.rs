@@ -378,8 +378,7 @@ pub enum Notice {
     },
     /// A post effect that is listed after one of a later stage.
     #[error(
-        "post effect {} is listed after {}, but comes before it in every picture: the order of post_effects counts \
-         within a stage only",
+        "post effect {} is listed after {}, but always comes before it: list it first, as order counts within a stage only",
         quote(.name),
         quote(.after)
     )]

@@ -76,8 +76,8 @@ fn effects_out_of_order_are_told() {
     assert_eq!(
         order(r#""dofPost", "outlinePost", "ssaoPost""#),
         [
-            r#"s.json:1:44 (mapping.post_effects[1]): warning: post effect "outlinePost" is listed after "dofPost", but comes before it in every picture: the order of post_effects counts within a stage only"#,
-            r#"s.json:1:59 (mapping.post_effects[2]): warning: post effect "ssaoPost" is listed after "dofPost", but comes before it in every picture: the order of post_effects counts within a stage only"#,
+            r#"s.json:1:44 (mapping.post_effects[1]): warning: post effect "outlinePost" is listed after "dofPost", but always comes before it: list it first, as order counts within a stage only"#,
+            r#"s.json:1:59 (mapping.post_effects[2]): warning: post effect "ssaoPost" is listed after "dofPost", but always comes before it: list it first, as order counts within a stage only"#,
         ]
     );
     assert_eq!(order(r#""ssaoPost", "ssaoPost", "outlinePost", "dofPost""#), Vec::<String>::new());
