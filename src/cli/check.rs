@@ -20,7 +20,9 @@ With --format json, stdout has one list, with an object for each STYLE:
   warnings     a list of messages
   unlisted     how many more mistakes there are than the 100 that are listed
   unlisted_warnings
-  explain      with --explain, if it loads: every value with its origin
+  explain      with --explain, if it loads: camera, geometry, transparency, lights, shaders, mapping (the rule that
+               wins first), post_effects; each value with its unit, its origin (a place or \"default\") and the place in
+               a base that it is written over
 A message is an object:
   code         the kind, such as \"unknown_key\"
   file, path   the file that it is about, maybe a base, and the JSON path in it
