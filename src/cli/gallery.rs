@@ -7,8 +7,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::inputs::{self, Size};
+use super::messages::clean;
 use super::render::{cannot_write, progress_bar};
-use super::{Failure, answer, tell};
+use super::{Failure, answer, print_message};
 use crate::config::Style;
 use crate::engine::{Engine, Gpu, Request};
 use crate::scene::{LoadOptions, ModelChoice, Scene, write_whole};
@@ -60,11 +61,11 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     for name in &scene_names {
         let stem = free_stem(name, scenes.iter().map(|scene| scene.stem.as_str()));
         let scene = inputs::load_scene(name, options)?.scene;
-        told.extend(inputs::scene_warnings(&scene, name));
+        told.extend(inputs::scene_warnings(&scene, name).into_iter().map(clean));
         scenes.push(Named { label: stem.replace('_', " "), stem, value: scene });
     }
     for style in &styles {
-        told.extend(style.value.warnings.iter().map(ToString::to_string));
+        told.extend(inputs::style_warnings(&style.value));
     }
     let pictures = scenes.iter().flat_map(|scene| styles.iter().map(|style| file_name(scene, style)));
     let outputs: Vec<PathBuf> = pictures.chain(["index.html".to_owned()]).map(|file| args.output.join(file)).collect();
@@ -79,7 +80,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     std::fs::create_dir_all(&args.output).map_err(|error| Failure::input(cannot_write(&args.output, &error)))?;
 
     let mut seen = std::collections::HashSet::new();
-    told.into_iter().filter(|line| seen.insert(line.clone())).for_each(tell);
+    told.into_iter().filter(|line| seen.insert(line.clone())).for_each(|message| print_message(&message));
     let bar = progress_bar((styles.len() * scenes.len()) as u64 + 9, false);
     bar.set_length((styles.len() * scenes.len()) as u64);
     let mut engine: Option<Engine> = None;

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::{Failure, tell};
-use crate::config::{self, Catalog, Files, Hint, Loader, Mistakes, Source, Style, Unreadable};
+use super::{Failure, messages, print_message, tell};
+use crate::config::{self, Catalog, Files, Hint, Loader, Mistakes, Place, Problem, Source, Style, Unreadable};
 use crate::engine;
 use crate::scene::{LoadOptions, ModelChoice, Scene, SceneError};
 use crate::shipped::{self, Shipped};
@@ -106,11 +106,18 @@ pub(crate) fn load_scene(name: &str, options: LoadOptions) -> Result<Loaded, Fai
 
 /// Loads a style file, or a shipped look by its name.
 pub(crate) fn load_style(name: &str) -> Result<Style, Failure> {
-    let input = find_style(name)?;
-    match input.file() {
+    check_style(name).map_err(Failure::from)
+}
+
+/// The same, with its mistakes.
+pub(crate) fn check_style(name: &str) -> Result<Style, Mistakes> {
+    match find_style(name) {
+        Ok(input) if input.file().is_none_or(Path::exists) => read_style(&input),
         // Of a file that is not there, the looks that are may be meant.
-        Some(path) if !path.exists() => Err(unknown("look", name, shipped::LOOKS)),
-        _ => read_style(&input).map_err(Failure::input),
+        _ => {
+            let reason = unknown_reason("look", name, shipped::LOOKS);
+            Err(Mistakes::one(Place::of_file(name), Problem::Unreadable(reason)))
+        }
     }
 }
 
@@ -141,7 +148,13 @@ impl Loader for FilesAndLooks {
 
 /// Prints what a style says that this version passes over, and what a scene's file had mended.
 pub(crate) fn print_warnings(style: &Style, scene: &Scene, scene_name: &str) {
-    style.warnings.iter().map(ToString::to_string).chain(scene_warnings(scene, scene_name)).for_each(tell);
+    style_warnings(style).iter().for_each(|warning| print_message(warning));
+    scene_warnings(scene, scene_name).into_iter().for_each(tell);
+}
+
+/// What a style asks for and does not get, each with its source line, clean.
+pub(crate) fn style_warnings(style: &Style) -> Vec<String> {
+    messages::of_warnings(&style.warnings, style.unlisted_warnings, &style.texts)
 }
 
 /// What a scene's file had mended, one line a kind.
@@ -151,6 +164,10 @@ pub(crate) fn scene_warnings(scene: &Scene, scene_name: &str) -> Vec<String> {
 
 /// A look or molecule that is not shipped, with those that are.
 pub(crate) fn unknown(what: &str, name: &str, among: &'static [Shipped]) -> Failure {
+    Failure::input(format!("{name}: {}", unknown_reason(what, name, among)))
+}
+
+fn unknown_reason(what: &str, name: &str, among: &'static [Shipped]) -> String {
     let nearest = among
         .iter()
         .map(|shipped| (strsim::damerau_levenshtein(shipped.name, name), shipped.name))
@@ -158,7 +175,7 @@ pub(crate) fn unknown(what: &str, name: &str, among: &'static [Shipped]) -> Fail
         .filter(|(distance, nearest)| *distance <= nearest.len() / 2);
     let hint = nearest.map_or(String::new(), |(_, nearest)| format!("did you mean {nearest:?}? "));
     let names: Vec<&str> = among.iter().map(|shipped| shipped.name).collect();
-    Failure::input(format!("{name:?}: no such file, and no {what} of this name; {hint}shipped: {}", names.join(", ")))
+    format!("no such file, and no {what} of this name; {hint}shipped: {}", names.join(", "))
 }
 
 /// Refuses outputs that would overwrite an input or one another. Devices and pipes take more than one.

@@ -1,8 +1,10 @@
 //! The command line: one file per subcommand; errors are printed once, here, and choose the exit code.
 
+mod check;
 mod copy;
 mod gallery;
 mod inputs;
+mod messages;
 mod render;
 mod watch;
 
@@ -12,7 +14,9 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use crate::config::Mistakes;
 use crate::engine::GpuError;
+use messages::clean;
 
 /// Draws molecules as a JSON style file says.
 #[derive(Debug, Parser)]
@@ -28,6 +32,8 @@ enum Command {
     Render(render::Args),
     /// Draw every look on every molecule, with a contact sheet
     Gallery(gallery::Args),
+    /// Say all that is wrong with style files, and what they mean
+    Check(check::Args),
     /// Copy a shipped look to a file, to start from
     Copy(copy::Args),
 }
@@ -36,25 +42,38 @@ enum Command {
 #[derive(Debug)]
 pub(crate) struct Failure {
     code: u8,
+    /// As a terminal may see it; empty if all is said.
     message: String,
 }
 
 impl Failure {
     /// The input is wrong: exit code 1.
     pub(crate) fn input(message: impl Display) -> Failure {
-        Failure { code: 1, message: message.to_string() }
+        Failure { code: 1, message: clean(message) }
     }
 
     /// The command line is wrong: exit code 2.
     pub(crate) fn usage(message: impl Display) -> Failure {
-        Failure { code: 2, message: message.to_string() }
+        Failure { code: 2, message: clean(message) }
+    }
+
+    /// The input is wrong, and each mistake was told.
+    pub(crate) fn told() -> Failure {
+        Failure { code: 1, message: String::new() }
+    }
+}
+
+impl From<Mistakes> for Failure {
+    /// The style is wrong: exit code 1.
+    fn from(mistakes: Mistakes) -> Failure {
+        Failure { code: 1, message: messages::of_mistakes(&mistakes) }
     }
 }
 
 impl From<GpuError> for Failure {
     /// The machine cannot do it: exit code 3.
     fn from(error: GpuError) -> Failure {
-        Failure { code: 3, message: error.to_string() }
+        Failure { code: 3, message: clean(error) }
     }
 }
 
@@ -72,12 +91,13 @@ pub fn run() -> ExitCode {
     let result = match cli.command {
         Command::Render(args) => render::run(&args),
         Command::Gallery(args) => gallery::run(&args),
+        Command::Check(args) => check::run(&args),
         Command::Copy(args) => copy::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            tell(&failure.message);
+            print_message(&failure.message);
             ExitCode::from(failure.code)
         }
     }
@@ -95,7 +115,12 @@ fn answer(line: impl Display) -> Result<(), Failure> {
 
 /// Prints a message to stderr. Where that cannot be written there is nobody left to tell.
 fn tell(message: impl Display) {
-    // Names of files may hold what a terminal would obey.
-    let shown = message.to_string().replace(|c: char| c.is_control() && c != '\n', "?");
-    let _ = writeln!(io::stderr(), "{shown}");
+    print_message(&clean(message));
+}
+
+/// The same for a message that is clean already, and may have colours; an empty one is none.
+fn print_message(message: &str) {
+    if !message.is_empty() {
+        let _ = writeln!(io::stderr(), "{message}");
+    }
 }

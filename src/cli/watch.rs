@@ -5,9 +5,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use super::messages::{self, clean};
 use super::render::{self, Args, rounded};
-use super::{Failure, answer, inputs, tell};
-use crate::engine::{Engine, Gpu, Part, Reload, Sources, source_tree_shaders};
+use super::{Failure, answer, inputs, print_message, tell};
+use crate::engine::{Engine, Gpu, Part, Refusal, Reload, Sources, source_tree_shaders};
 
 /// How often an interrupt is looked for while nothing happens. Ours: a key press that takes longer feels lost.
 const PATIENCE: Duration = Duration::from_millis(100);
@@ -46,8 +47,12 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
                     tell(format!("{}: fine again; the picture is as it was", part_name(part, args)));
                 }
                 Reload::Refused(part, refusal) => {
+                    match &refusal {
+                        Refusal::Style(mistakes) => print_message(&messages::of_mistakes(mistakes)),
+                        other => tell(other),
+                    }
                     let kept = if engine.style().is_some() { "; the picture stays as it is" } else { "" };
-                    tell(format!("{refusal}\n{}: waiting for it to be mended{kept}", part_name(part, args)));
+                    tell(format!("{}: waiting for it to be mended{kept}", part_name(part, args)));
                 }
             }
         }
@@ -73,10 +78,11 @@ fn part_name(part: Part, args: &Args) -> &str {
 /// Tells warnings of what is drawn now that were not told before.
 fn tell_warnings(engine: &Engine, args: &Args, told: &mut Vec<String>) {
     let (Some(style), Some(scene)) = (engine.style(), engine.scene()) else { return };
-    let mut warnings: Vec<String> = style.warnings.iter().map(ToString::to_string).collect();
-    warnings.extend(inputs::scene_warnings(scene, args.scene()));
-    warnings.extend(engine.limits_exceeded().iter().map(|limit| format!("{}: warning: {limit}", args.style())));
-    warnings.iter().filter(|warning| !told.contains(warning)).for_each(tell);
+    let mut warnings = inputs::style_warnings(style);
+    warnings.extend(inputs::scene_warnings(scene, args.scene()).iter().map(clean));
+    let limits = engine.limits_exceeded();
+    warnings.extend(limits.iter().map(|limit| clean(format!("{}: warning: {limit}", args.style()))));
+    warnings.iter().filter(|warning| !told.contains(warning)).for_each(|warning| print_message(warning));
     *told = warnings;
 }
 

@@ -73,9 +73,11 @@ impl Camera {
         }
     }
 
-    pub(super) fn read(reader: &mut Reader<'_>, node: &Node) -> Self {
+    /// Reads `camera` and says what is wrong with it.
+    pub(super) fn read(reader: &mut Reader<'_>, node: &Node) -> Values {
         let members: &[Member] = reader.object("camera", node);
-        let camera = Self::new(&reader.table("camera", members, PARAMS));
+        let values = reader.table("camera", members, PARAMS);
+        let camera = Self::new(&values);
         if camera.up == Some([0.0; 3]) {
             let at = node.get("up").unwrap_or(node).span;
             reader.wrong(at, Problem::Meaningless("\"up\" is no direction: one of its numbers must not be 0"));
@@ -85,6 +87,6 @@ impl Camera {
             let reason = "\"position\" and \"target\" are the same point, so the camera looks nowhere";
             reader.wrong(at, Problem::Meaningless(reason));
         }
-        camera
+        values
     }
 }

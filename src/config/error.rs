@@ -8,11 +8,12 @@ use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use super::diagnostic::SourceTexts;
 use super::hint::{Hint, OfScene, number, quote};
 
-/// Most mistakes that are listed; the rest is counted.
+/// Most mistakes, and most warnings, that are listed; the rest is counted.
 /// Ours: more than a screen holds, and a bound on the work that a hostile file causes.
-const MOST_LISTED: usize = 100;
+pub const MOST_LISTED: usize = 100;
 
 /// A place in a file: what a message points at.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -225,6 +226,21 @@ impl Problem {
             Self::Meaningless(_) => "meaningless",
         }
     }
+
+    /// The nearest word and the words that are allowed, if the problem is one of words.
+    pub fn hint(&self) -> Option<&Hint> {
+        match self {
+            Self::UnknownKey { hint, .. }
+            | Self::MissingKey { hint, .. }
+            | Self::NotAChoice { hint, .. }
+            | Self::UnknownName { hint, .. }
+            | Self::EffectAsShader { hint, .. }
+            | Self::ShaderAsEffect { hint, .. }
+            | Self::BadColor { hint, .. }
+            | Self::BadSelector { hint, .. } => Some(hint),
+            _ => None,
+        }
+    }
 }
 
 /// One mistake.
@@ -247,6 +263,12 @@ pub struct Mistakes {
     /// The files that were read, the style first, then its bases, and last one that is not there or cannot be read: what
     /// to watch for a correction.
     pub files: Vec<PathBuf>,
+    /// What was noticed beside the mistakes.
+    pub warnings: Vec<Warning>,
+    /// How many more warnings there are than the list holds.
+    pub unlisted_warnings: usize,
+    /// The texts of the files, for the source lines under messages.
+    pub texts: SourceTexts,
 }
 
 impl Mistakes {
@@ -291,7 +313,7 @@ impl fmt::Display for Mistakes {
 impl std::error::Error for Mistakes {}
 
 /// What a style asks for and does not get, though it loads.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum Notice {
     /// A shader of the contract that this version does not draw.
     #[error("shader {} is not drawn by this version yet: its objects are drawn with \"{instead}\"", quote(.name))]
@@ -327,6 +349,59 @@ pub enum Notice {
         /// The nearest names that the scene has.
         hint: Hint,
     },
+    /// A shader of the file that no rule names.
+    #[error("shader {} draws nothing: name it in mapping, or remove it", quote(.name))]
+    UnusedShader {
+        /// The name of the entry.
+        name: String,
+    },
+    /// A post effect of the file that is not listed.
+    #[error("post effect {} does nothing: list it in mapping.post_effects, or remove it", quote(.name))]
+    UnusedEffect {
+        /// The name of the entry.
+        name: String,
+    },
+    /// A selector that a later one always beats.
+    #[error(
+        "selector {} never decides: {} at {line}:{column} picks the same objects and comes later; remove one",
+        quote(.selector),
+        quote(.later)
+    )]
+    NeverDecides {
+        /// The selector as written.
+        selector: String,
+        /// The one that always wins, as written.
+        later: String,
+        /// Line of that one.
+        line: u32,
+        /// Column of that one.
+        column: u32,
+    },
+    /// A post effect that is listed after one of a later stage.
+    #[error(
+        "post effect {} is listed after {}, but always comes before it: list it first, as order counts within a stage only",
+        quote(.name),
+        quote(.after)
+    )]
+    StageOrder {
+        /// The effect.
+        name: String,
+        /// The effect of a later stage that is listed before it.
+        after: String,
+    },
+    /// An outline that is wider than what it outlines.
+    #[error(
+        "the outline is {width} wide, but {outlined} has a radius of {radius}: make it narrower, or give it in points, \
+         such as \"2pt\""
+    )]
+    WideOutline {
+        /// Its width with the unit.
+        width: String,
+        /// What it surrounds, such as `the smallest atom inside`.
+        outlined: &'static str,
+        /// The radius of that, with the unit.
+        radius: String,
+    },
 }
 
 impl Notice {
@@ -338,6 +413,19 @@ impl Notice {
             Self::PropertyNotDrawn { .. } => "property_not_drawn",
             Self::TypeNotDrawn { .. } => "type_not_drawn",
             Self::MatchesNothing { .. } => "matches_nothing",
+            Self::UnusedShader { .. } => "unused_shader",
+            Self::UnusedEffect { .. } => "unused_effect",
+            Self::NeverDecides { .. } => "never_decides",
+            Self::StageOrder { .. } => "stage_order",
+            Self::WideOutline { .. } => "wide_outline",
+        }
+    }
+
+    /// The nearest word and the words that are allowed, if there are any.
+    pub fn hint(&self) -> Option<&Hint> {
+        match self {
+            Self::MatchesNothing { hint, .. } => Some(hint),
+            _ => None,
         }
     }
 }

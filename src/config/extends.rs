@@ -4,7 +4,7 @@
 //! `mapping` and the objects `camera`, `geometry` and `transparency` merge by key; lists are replaced. A key that is
 //! written again counts as written last, so that among equal selectors a base comes before what extends it.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::error::{Mistakes, Place, Problem};
@@ -12,7 +12,7 @@ use super::file::{Unreadable, read_file};
 use super::parse::parse;
 use super::source::{Source, Texts};
 use super::style::check_version;
-use super::syntax::{Member, Node, Tree};
+use super::syntax::{Member, Node, Span, Tree};
 
 /// Longest chain of bases. Ours: nobody keeps track of more.
 const MAX_BASES: usize = 16;
@@ -54,7 +54,12 @@ pub(super) struct Merged {
     /// What is wrong so far.
     pub(super) mistakes: Mistakes,
     pub(super) files: Vec<PathBuf>,
+    pub(super) replaced: Replaced,
 }
+
+/// What each value or entry of a style replaces or changes in its base.
+#[derive(Debug, Default)]
+pub(super) struct Replaced(pub(super) Vec<(Span, Span)>);
 
 /// Parses a style and its bases into `texts` and merges what can be read of them.
 pub(super) fn merge_all(source: &Source, loader: &dyn Loader, texts: &mut Texts) -> Merged {
@@ -75,8 +80,9 @@ pub(super) fn merge_all(source: &Source, loader: &dyn Loader, texts: &mut Texts)
     // A style that is unusable as a whole leaves its bases to be checked.
     let mut roots = texts.0.iter().zip(usable).rev().filter(|(_, is_usable)| *is_usable).map(|(text, _)| &text.root);
     let first = roots.next().unwrap_or(&texts.0[0].root).clone();
-    let root = roots.fold(first, merge);
-    Merged { root, mistakes: chain.mistakes, files }
+    let mut replaced = Replaced::default();
+    let root = roots.fold(first, |base, own| merge(base, own, &mut replaced));
+    Merged { root, mistakes: chain.mistakes, files, replaced }
 }
 
 /// A style, its base, and so on, while they are read.
@@ -157,21 +163,27 @@ fn members(node: &Node) -> Option<&[Member]> {
 
 /// All members of `own`, after those of `base` whose keys `own` does not have. If either is no object, `own`, unless
 /// that cannot be read.
-fn union(base: &Node, own: &Node) -> Node {
+fn union(base: &Node, own: &Node, replaced: &mut Replaced) -> Node {
     if own.value == Tree::Broken {
         return base.clone();
     }
     let (Some(base), Some(own_members)) = (members(base), members(own)) else {
         return own.clone();
     };
-    let keys: HashSet<&str> = own_members.iter().map(|member| member.key.as_str()).collect();
-    let kept = base.iter().filter(|member| !keys.contains(member.key.as_str()));
+    let keys: HashMap<&str, &Member> = own_members.iter().map(|member| (member.key.as_str(), member)).collect();
+    let kept = base.iter().filter(|member| match keys.get(member.key.as_str()) {
+        Some(own) => {
+            replaced.0.extend([(own.key_span, member.key_span), (own.value.span, member.value.span)]);
+            false
+        }
+        None => true,
+    });
     Node { value: Tree::Object(kept.chain(own_members).cloned().collect()), span: own.span }
 }
 
 /// A whole style over its base.
-fn merge(base: Node, own: &Node) -> Node {
-    let mut merged = union(&base, own);
+fn merge(base: Node, own: &Node, replaced: &mut Replaced) -> Node {
+    let mut merged = union(&base, own, replaced);
     let Tree::Object(merged_members) = &mut merged.value else {
         return merged;
     };
@@ -180,8 +192,8 @@ fn merge(base: Node, own: &Node) -> Node {
             continue;
         };
         match member.key.as_str() {
-            "camera" | "geometry" | "transparency" | "mapping" => member.value = union(base, own),
-            "shaders" => member.value = merge_shaders(base, own),
+            "camera" | "geometry" | "transparency" | "mapping" => member.value = union(base, own, replaced),
+            "shaders" => member.value = merge_shaders(base, own, replaced),
             _ => {}
         }
     }
@@ -189,7 +201,7 @@ fn merge(base: Node, own: &Node) -> Node {
 }
 
 /// The base's entries in their order, each with the changes of its namesake, then the new ones.
-fn merge_shaders(base: &Node, own: &Node) -> Node {
+fn merge_shaders(base: &Node, own: &Node, replaced: &mut Replaced) -> Node {
     if own.value == Tree::Broken {
         return base.clone();
     }
@@ -204,24 +216,25 @@ fn merge_shaders(base: &Node, own: &Node) -> Node {
         // Taken out, so that a second namesake stays an entry of its own, which is a mistake that is found later.
         let namesake = entry.get("name").and_then(Node::text).and_then(|name| of_name.remove(name));
         match namesake {
-            Some(i) => entries[i] = merge_entry(&entries[i], entry),
+            Some(i) => entries[i] = merge_entry(&entries[i], entry, replaced),
             None => entries.push(entry.clone()),
         }
     }
     Node { value: Tree::List(entries), span: own.span }
 }
 
-fn merge_entry(base: &Node, own: &Node) -> Node {
+fn merge_entry(base: &Node, own: &Node, replaced: &mut Replaced) -> Node {
+    replaced.0.push((own.span, base.span));
     let shader_of = |entry: &Node| entry.get("shader").and_then(Node::text).map(str::to_owned);
     if own.get("shader").is_some() && shader_of(own) != shader_of(base) {
         return own.clone();
     }
-    let mut merged = union(base, own);
+    let mut merged = union(base, own, replaced);
     if let (Tree::Object(members), Some(base), Some(own)) =
         (&mut merged.value, base.get("properties"), own.get("properties"))
     {
         for member in members.iter_mut().filter(|member| member.key == "properties") {
-            member.value = union(base, own);
+            member.value = union(base, own, replaced);
         }
     }
     merged

@@ -9,7 +9,7 @@ const LONGEST_COMPARED: usize = 64;
 const LONGEST_QUOTED: usize = 60;
 
 /// The nearest word and all that are allowed.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct Hint {
     /// The nearest allowed word, if one is near.
     pub nearest: Option<String>,

@@ -3,7 +3,7 @@
 use super::color::Srgba;
 use super::error::Problem;
 use super::length::Length;
-use super::param::Param;
+use super::param::{Param, Value};
 use super::read::Reader;
 use super::syntax::Node;
 use super::values::Values;
@@ -105,20 +105,25 @@ impl Light {
     }
 
     /// The lights of a style that has no `lights`: one key light and ambient.
-    pub fn default_lights() -> Vec<Self> {
-        let key = Self::new(&Values::defaults(PARAMS));
-        let ambient = Self { kind: LightKind::Ambient, intensity: AMBIENT_INTENSITY, ..key.clone() };
+    pub fn default_lights() -> Vec<Values> {
+        let key = Values::defaults(PARAMS);
+        let mut ambient = key.clone();
+        let kind = key.choices("type").iter().position(|kind| *kind == "ambient").expect("it is a kind of light");
+        ambient.change_default("type", Value::Choice(kind));
+        ambient.change_default("intensity", Value::Number(AMBIENT_INTENSITY));
         vec![key, ambient]
     }
 
-    pub(super) fn read(reader: &mut Reader<'_>, node: &Node) -> Self {
+    /// Reads one light and says what is wrong with it.
+    pub(super) fn read(reader: &mut Reader<'_>, node: &Node) -> Values {
         let members = reader.object("light", node);
-        let light = Self::new(&reader.table("light", members, PARAMS));
+        let values = reader.table("light", members, PARAMS);
+        let light = Self::new(&values);
         if light.kind == LightKind::Directional && light.position == [0.0; 3] {
             let at = node.get("position").unwrap_or(node).span;
             let reason = "a directional light at the centre shines nowhere: one of its numbers must not be 0";
             reader.wrong(at, Problem::Meaningless(reason));
         }
-        light
+        values
     }
 }

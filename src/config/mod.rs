@@ -12,8 +12,10 @@ mod bare;
 pub mod camera;
 pub mod catalog;
 pub mod color;
+pub mod diagnostic;
 pub mod error;
 mod escape;
+pub mod explain;
 pub mod extends;
 pub mod file;
 pub mod geometry;
@@ -41,7 +43,8 @@ use std::path::Path;
 pub use camera::{Camera, Orient};
 pub use catalog::{Catalog, CatalogEntry, Role};
 pub use color::{BaseColor, Srgba};
-pub use error::{Mistake, Mistakes, Notice, Place, Problem, Warning};
+pub use diagnostic::{Severity, SourceTexts};
+pub use error::{MOST_LISTED, Mistake, Mistakes, Notice, Place, Problem, Warning};
 pub use extends::{Files, Loader};
 pub use file::Unreadable;
 pub use geometry::{AtomRadius, Geometry};
@@ -53,7 +56,7 @@ pub use rules::{Matched, MatchedValues, RuleIndex};
 pub use selector::{Attribute, AttributeSet, ObjectKind, Selector};
 pub use shaders::ShaderUse;
 pub use source::Source;
-pub use style::{Rule, Style};
+pub use style::{EffectUse, Overrides, Rule, SectionValues, Style};
 pub use transparency::{Transparency, TransparencyMethod};
 pub use values::{Origin, Values};
 
@@ -66,7 +69,13 @@ pub fn load(source: &Source, catalog: &Catalog<'_>) -> Result<Style, Mistakes> {
 pub fn load_with(source: &Source, catalog: &Catalog<'_>, loader: &dyn Loader) -> Result<Style, Mistakes> {
     let mut texts = source::Texts::default();
     let merged = extends::merge_all(source, loader, &mut texts);
-    style::resolve(&texts, merged, catalog)
+    let mut resolved = style::resolve(&texts, merged, catalog);
+    let texts = SourceTexts::new(texts.0.into_iter().map(|text| (text.name, text.text.into())));
+    match &mut resolved {
+        Ok(style) => style.texts = texts,
+        Err(mistakes) => mistakes.texts = texts,
+    }
+    resolved
 }
 
 /// Loads a style file; a base that it extends is a file beside it.

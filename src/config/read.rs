@@ -1,7 +1,9 @@
 //! Reading parsed values as a parameter table asks, and collecting what is wrong with them.
 
+use std::collections::HashSet;
+
 use super::color::{BaseColor, Srgba, css_names};
-use super::error::{Mistakes, Notice, Place, Problem, Warning};
+use super::error::{MOST_LISTED, Mistakes, Notice, Place, Problem, Warning};
 use super::hint::{Hint, quote};
 use super::length::Length;
 use super::param::{Kind, LARGEST, Param, Value};
@@ -17,9 +19,17 @@ pub(super) struct Reader<'a> {
     pub(super) texts: &'a Texts,
     pub(super) mistakes: Mistakes,
     pub(super) warnings: Vec<Warning>,
+    /// How many more warnings there are.
+    pub(super) unlisted_warnings: usize,
+    told: HashSet<Notice>,
 }
 
-impl Reader<'_> {
+impl<'a> Reader<'a> {
+    /// A reader of these texts, with the mistakes that parsing them found.
+    pub(super) fn new(texts: &'a Texts, mistakes: Mistakes) -> Self {
+        Self { texts, mistakes, warnings: Vec::new(), unlisted_warnings: 0, told: HashSet::new() }
+    }
+
     /// Notes a mistake, unless it is one of a value that cannot be read, which was said.
     pub(super) fn wrong(&mut self, span: Span, problem: Problem) {
         let texts = self.texts;
@@ -38,8 +48,13 @@ impl Reader<'_> {
 
     /// Notes a warning, once for each text of it.
     pub(super) fn warn(&mut self, place: Place, notice: Notice) {
-        if self.warnings.iter().all(|warning| warning.notice != notice) {
+        if !self.told.insert(notice.clone()) {
+            return;
+        }
+        if self.warnings.len() < MOST_LISTED {
             self.warnings.push(Warning { place, notice });
+        } else {
+            self.unlisted_warnings += 1;
         }
     }
 

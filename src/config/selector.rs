@@ -197,6 +197,17 @@ impl Selector {
         self.conditions.iter().filter(move |(of, glob)| !meets(*of, glob)).map(|(of, glob)| (*of, glob.pattern()))
     }
 
+    /// What it asks, in one form for every way to write it: two that ask the same match the same objects.
+    pub(super) fn question(&self) -> (Option<ObjectKind>, Vec<(Attribute, String)>) {
+        let plain = |attribute, pattern: &str| match attribute {
+            Attribute::Element => pattern.to_ascii_lowercase(),
+            _ => pattern.to_owned(),
+        };
+        let mut conditions: Vec<_> = self.conditions().map(|(of, pattern)| (of, plain(of, pattern))).collect();
+        conditions.sort();
+        (self.kind, conditions)
+    }
+
     /// Whether it is for objects of a type at all.
     pub fn is_for(&self, kind: ObjectKind) -> bool {
         self.kind.is_none_or(|own| own == kind)

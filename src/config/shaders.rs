@@ -7,6 +7,7 @@ use super::error::{Notice, Place, Problem};
 use super::hint::{Hint, quote};
 use super::param::Param;
 use super::read::{Reader, wrong_type};
+use super::style::{EffectUse, Rule};
 use super::syntax::{Member, Node, Tree};
 use super::values::Values;
 
@@ -39,6 +40,8 @@ pub struct ShaderUse {
     pub values: Values,
     /// Its entry; `None` if the file declares none.
     pub place: Option<Place>,
+    /// Its name, where the entry has one.
+    pub name_place: Option<Place>,
 }
 
 /// The shaders of a style while it is read.
@@ -139,6 +142,7 @@ impl<'a> Shaders<'a> {
         let mut used = self.with_defaults(reader, entry, place);
         used.name = name.unwrap_or(entry.name).to_owned();
         used.place = Some(reader.texts.place(node.span));
+        used.name_place = node.get("name").map(|name| reader.texts.place(name.span));
         if entry.drawn {
             used.values = reader.table(&format!("shader {}", quote(entry.name)), properties, entry.params);
             return used;
@@ -176,6 +180,7 @@ impl<'a> Shaders<'a> {
             drawn: entry.drawn || entry.role == Role::Object,
             values: Values::defaults(params),
             place: None,
+            name_place: None,
         }
     }
 
@@ -218,6 +223,29 @@ impl<'a> Shaders<'a> {
         match self.declared.get(basic.name) {
             Some(Some(index)) if self.uses[*index].role == Role::Object => *index,
             _ => self.undeclared_use(reader, basic, Place::of_file("")),
+        }
+    }
+
+    /// Warns of the entries of the style itself that nothing names. A base may hold more than a style takes from it.
+    pub(super) fn warn_of_unused(
+        &self,
+        reader: &mut Reader<'_>,
+        mapping: &[Rule],
+        effects: &[EffectUse],
+        basic: usize,
+    ) {
+        let mut is_used = vec![false; self.uses.len()];
+        let named = mapping.iter().filter_map(|rule| rule.target).chain(effects.iter().map(|effect| effect.index));
+        named.chain([basic]).for_each(|index| is_used[index] = true);
+        let own = reader.texts.0[0].name.clone();
+        for used in self.uses.iter().zip(is_used).filter(|(_, is_used)| !is_used).map(|(used, _)| used) {
+            let Some(place) = used.name_place.clone().filter(|place| place.file == own) else { continue };
+            let name = used.name.clone();
+            let notice = match used.role {
+                Role::Object => Notice::UnusedShader { name },
+                Role::PostEffect => Notice::UnusedEffect { name },
+            };
+            reader.warn(place, notice);
         }
     }
 

@@ -1,11 +1,14 @@
 //! A style, resolved: every name bound, every property with a value, ready for an engine.
 
+use std::collections::HashMap;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::camera::Camera;
 use super::catalog::{Catalog, Role};
+use super::diagnostic::SourceTexts;
 use super::error::{Mistakes, Notice, Place, Problem, Warning};
-use super::extends::Merged;
+use super::extends::{Merged, Replaced};
 use super::geometry::{self, Geometry};
 use super::light::Light;
 use super::param::Param;
@@ -13,7 +16,7 @@ use super::read::{Reader, wrong_type};
 use super::selector::{Attribute, AttributeSet, ObjectKind, Selector};
 use super::shaders::{ShaderUse, Shaders};
 use super::source::Texts;
-use super::syntax::{Node, Tree};
+use super::syntax::{Node, Span, Tree};
 use super::transparency::{self, Transparency};
 use super::values::Values;
 
@@ -38,6 +41,54 @@ pub struct Rule {
     pub place: Place,
 }
 
+/// One entry of `post_effects`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EffectUse {
+    /// The effect, as an index into [`Style::shaders`].
+    pub index: usize,
+    /// Where it is listed.
+    pub place: Place,
+}
+
+/// The values of the sections of a style, with the origin of each.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SectionValues {
+    /// Of `camera`.
+    pub camera: Values,
+    /// Of `geometry`.
+    pub geometry: Values,
+    /// Of `transparency`.
+    pub transparency: Values,
+    /// Of each light.
+    pub lights: Vec<Values>,
+    /// Where `lights` are listed; `None`: the style has none, and the default ones shine.
+    pub lights_place: Option<Place>,
+    /// Where post effects are listed, if they are.
+    pub effects_place: Option<Place>,
+}
+
+/// What the values and entries of a style replace or change in its bases.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Overrides(HashMap<(Arc<str>, usize), Place>);
+
+impl Overrides {
+    fn new(texts: &Texts, replaced: &Replaced) -> Self {
+        let spot = |span| {
+            let (line, column) = texts.line_column(span);
+            let text = &texts.0[span.file as usize];
+            let (start, end) = (span.start as usize, span.end as usize);
+            Place { file: text.name.clone(), line, column, start, end, path: String::new() }
+        };
+        let key = |span: Span| (texts.0[span.file as usize].name.clone(), span.start as usize);
+        Self(replaced.0.iter().map(|(own, base)| (key(*own), spot(*base))).collect())
+    }
+
+    /// What lies at the same path of the nearest base, if that has it; without the path.
+    pub fn of(&self, place: &Place) -> Option<&Place> {
+        self.0.get(&(place.file.clone(), place.start))
+    }
+}
+
 /// A style without mistakes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Style {
@@ -53,12 +104,22 @@ pub struct Style {
     pub basic: usize,
     /// The post effects that this version draws, in the order of the file.
     pub post_effects: Vec<usize>,
+    /// Every post effect that the file lists, drawn or not, in its order.
+    pub listed_effects: Vec<EffectUse>,
     /// The lights.
     pub lights: Vec<Light>,
     /// How fragments that let light through are put in order.
     pub transparency: Transparency,
     /// What the file asks for and does not get.
     pub warnings: Vec<Warning>,
+    /// How many more warnings there are than the list holds.
+    pub unlisted_warnings: usize,
+    /// The values behind camera, geometry, lights and transparency, with their origins.
+    pub values: SectionValues,
+    /// What it replaces of its bases.
+    pub overrides: Overrides,
+    /// The texts of its files, for the source lines under messages.
+    pub texts: SourceTexts,
     /// The files it was read from, itself first, then its bases: what to watch for changes.
     pub files: Vec<PathBuf>,
 }
@@ -91,7 +152,7 @@ impl Style {
 
 /// Resolves a merged tree.
 pub(super) fn resolve(texts: &Texts, merged: Merged, catalog: &Catalog<'_>) -> Result<Style, Mistakes> {
-    let mut reader = Reader { texts, mistakes: merged.mistakes, warnings: Vec::new() };
+    let mut reader = Reader::new(texts, merged.mistakes);
     let root = &merged.root;
     for member in reader.object("style", root) {
         if !KEYS.contains(&member.key.as_str()) {
@@ -103,34 +164,55 @@ pub(super) fn resolve(texts: &Texts, merged: Merged, catalog: &Catalog<'_>) -> R
     }
     let camera = match root.get("camera") {
         Some(node) => Camera::read(&mut reader, node),
-        None => Camera::new(&Values::defaults(super::camera::PARAMS)),
+        None => Values::defaults(super::camera::PARAMS),
     };
-    let geometry = Geometry::new(&section(&mut reader, root, "geometry", geometry::PARAMS));
-    let transparency = Transparency::new(&section(&mut reader, root, "transparency", transparency::PARAMS));
+    let geometry = section(&mut reader, root, "geometry", geometry::PARAMS);
+    let transparency = section(&mut reader, root, "transparency", transparency::PARAMS);
     let lights = match root.get("lights") {
         Some(node) => reader.list("lights", node).iter().map(|light| Light::read(&mut reader, light)).collect(),
         None => Light::default_lights(),
     };
+    let lights_place = root.get("lights").map(|node| texts.place(node.span));
+    let effects_node = root.get("mapping").and_then(|mapping| mapping.get(POST_EFFECTS));
+    let effects_place = effects_node.map(|node| texts.place(node.span));
+    let values = SectionValues { camera, geometry, transparency, lights, lights_place, effects_place };
     let mut shaders = Shaders::new(*catalog);
     if let Some(node) = root.get("shaders") {
         shaders.declare(&mut reader, node);
     }
-    let (mapping, post_effects) = match root.get("mapping") {
+    let (mapping, listed_effects) = match root.get("mapping") {
         Some(node) => read_mapping(&mut reader, &mut shaders, catalog, node),
         None => (Vec::new(), Vec::new()),
     };
     let basic = shaders.basic(&mut reader);
-    let Reader { mut mistakes, mut warnings, .. } = reader;
-    let order = |place: &Place| (texts.0.iter().position(|text| text.name == place.file), place.start);
-    if mistakes.is_empty() {
-        warnings.sort_by_key(|warning| order(&warning.place));
-        let (shaders, files) = (shaders.uses, merged.files);
-        Ok(Style { camera, geometry, mapping, shaders, basic, post_effects, lights, transparency, warnings, files })
-    } else {
-        mistakes.list.sort_by_key(|mistake| order(&mistake.place));
-        mistakes.files = merged.files;
-        Err(mistakes)
+    if reader.mistakes.is_empty() {
+        shaders.warn_of_unused(&mut reader, &mapping, &listed_effects, basic);
     }
+    let Reader { mut mistakes, mut warnings, unlisted_warnings, .. } = reader;
+    let order = |place: &Place| (texts.0.iter().position(|text| text.name == place.file), place.start);
+    warnings.sort_by_key(|warning| order(&warning.place));
+    if !mistakes.is_empty() {
+        mistakes.list.sort_by_key(|mistake| order(&mistake.place));
+        return Err(Mistakes { files: merged.files, warnings, unlisted_warnings, ..mistakes });
+    }
+    let drawn = listed_effects.iter().map(|effect| effect.index).filter(|index| shaders.uses[*index].drawn).collect();
+    Ok(Style {
+        camera: Camera::new(&values.camera),
+        geometry: Geometry::new(&values.geometry),
+        mapping,
+        shaders: shaders.uses,
+        basic,
+        post_effects: drawn,
+        listed_effects,
+        lights: values.lights.iter().map(Light::new).collect(),
+        transparency: Transparency::new(&values.transparency),
+        warnings,
+        unlisted_warnings,
+        values,
+        overrides: Overrides::new(texts, &merged.replaced),
+        texts: SourceTexts::default(),
+        files: merged.files,
+    })
 }
 
 fn section(reader: &mut Reader<'_>, root: &Node, name: &str, params: &'static [Param]) -> Values {
@@ -148,13 +230,14 @@ fn read_mapping(
     shaders: &mut Shaders<'_>,
     catalog: &Catalog<'_>,
     node: &Node,
-) -> (Vec<Rule>, Vec<usize>) {
+) -> (Vec<Rule>, Vec<EffectUse>) {
     let mut rules = Vec::new();
-    let mut post_effects = Vec::new();
+    let mut effects = Vec::new();
     for member in reader.object("mapping", node) {
         if member.key == POST_EFFECTS {
             for item in reader.list(POST_EFFECTS, &member.value) {
-                post_effects.extend(shaders.resolve(reader, POST_EFFECTS, item, Role::PostEffect));
+                let index = shaders.resolve(reader, POST_EFFECTS, item, Role::PostEffect);
+                effects.extend(index.map(|index| EffectUse { index, place: reader.texts.place(item.span) }));
             }
             continue;
         }
@@ -173,11 +256,28 @@ fn read_mapping(
         }
         rules.push(Rule { selector, target, place });
     }
+    warn_of_beaten(reader, &rules);
     // The later of two equal ranks wins: turn the order round, then sort without disturbing it.
     rules.reverse();
     rules.sort_by_key(|rule| std::cmp::Reverse(rule.selector.rank()));
-    post_effects.retain(|index| shaders.uses[*index].drawn);
-    (rules, post_effects)
+    (rules, effects)
+}
+
+/// Warns of each rule that another one of the same file always beats: both ask the same, and that one comes later.
+/// `rules` are in the order of the text. Over a base, to write a selector in another way is to change the base.
+fn warn_of_beaten(reader: &mut Reader<'_>, rules: &[Rule]) {
+    let mut last = HashMap::with_capacity(rules.len());
+    for rule in rules {
+        last.insert((rule.place.file.clone(), rule.selector.question()), rule);
+    }
+    for rule in rules {
+        let winner = last[&(rule.place.file.clone(), rule.selector.question())];
+        if winner.place.start != rule.place.start {
+            let (selector, later) = (rule.selector.to_string(), winner.selector.to_string());
+            let (line, column) = (winner.place.line, winner.place.column);
+            reader.warn(rule.place.clone(), Notice::NeverDecides { selector, later, line, column });
+        }
+    }
 }
 
 /// Refuses a file of another version. Each file is asked, a base too.

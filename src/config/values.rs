@@ -71,6 +71,12 @@ impl Values {
         self.entries[index] = (value, Origin::File(place));
     }
 
+    /// Replaces a default by another one: no file gives the value.
+    pub(super) fn change_default(&mut self, name: &str, value: Value) {
+        let index = self.index(name).expect("a table knows its own names");
+        self.entries[index] = (value, Origin::Default);
+    }
+
     fn index(&self, name: &str) -> Option<usize> {
         self.params.iter().position(|param| param.name == name)
     }
@@ -142,8 +148,12 @@ impl Values {
 
     /// The word that is chosen.
     pub fn choice(&self, name: &str) -> &'static str {
-        let choices = self.index(name).map_or(&[][..], |i| self.params[i].choices());
-        choices[self.choice_index(name)]
+        self.choices(name)[self.choice_index(name)]
+    }
+
+    /// The words that a choice has; empty for other kinds.
+    pub(super) fn choices(&self, name: &str) -> &'static [&'static str] {
+        self.index(name).map_or(&[], |i| self.params[i].choices())
     }
 
     /// The index of the word that is chosen, in the order of the table.

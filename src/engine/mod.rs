@@ -1,6 +1,7 @@
 //! The engine: the three providers, the scene and the renderer. Window, headless command and tests all use it.
 
 mod build;
+pub mod lint;
 mod live;
 mod palette;
 mod pending;
@@ -23,7 +24,6 @@ use live::Live;
 
 pub use crate::frame::MAX_SAMPLES;
 pub use crate::gpu::{Counters, Gpu, GpuError};
-pub use crate::providers::unmatched;
 pub use live::{Part, Refusal, Reload, ReloadTimes, Sources, source_tree_shaders};
 
 /// Effects and shaders of the contract that this version names but does not draw.

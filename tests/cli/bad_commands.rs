@@ -61,7 +61,7 @@ fn a_name_that_nothing_has_finds_its_nearest() {
     folder.draw("zzzzzzzz").refused(1, "no molecule of this name; shipped: c60, ");
     folder.draw("nope.xyz").refused(1, "nope.xyz: no such file; check the spelling");
     folder.draw("no/nope.pdb").refused(1, "no/nope.pdb: no such file");
-    folder.draw("c60 -s nope.json").refused(1, "nope.json\": no such file, and no look of this name");
+    folder.draw("c60 -s nope.json").refused(1, "nope.json: no such file, and no look of this name");
     folder.run_all(&["render", "", "-o", "a.png"]).refused(1, "no such file");
     folder.run_all(&["render", "c60", "-s", "", "-o", "a.png"]).refused(1, "no such file");
     folder.run_all(&["render", "a\nb", "-o", "a.png"]).refused(1, "a\\nb");

@@ -6,6 +6,7 @@ mod bad_commands;
 mod bad_outputs;
 mod bad_scenes;
 mod bad_styles;
+mod check;
 mod extremes;
 mod pictures;
 mod rig;

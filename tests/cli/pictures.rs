@@ -109,7 +109,7 @@ fn a_gallery_is_a_folder_that_opens_from_disk() {
     let args = ["gallery", "c60", "a b&c.xyz", "-s", "education", "-s", "future", "-o", "new/sheet"];
     let outcome = folder.run_all(&[&args[..], &["--size", "32x32", "--samples", "1"]].concat()).done();
     assert!(outcome.out.contains("4 pictures") && outcome.out.contains("index.html"), "{}", outcome.out);
-    assert_eq!(outcome.err.lines().count(), 1, "one note for all cells of a look: {}", outcome.err);
+    assert_eq!(outcome.messages().len(), 1, "one note for all cells of a look: {}", outcome.err);
     let page = String::from_utf8(folder.read("new/sheet/index.html")).unwrap();
     let mut links = 0;
     for attribute in ["src=\"", "href=\""] {

@@ -31,12 +31,39 @@ impl Outcome {
         assert!(!self.err.contains("panicked"), "{}", self.err);
         assert_eq!(self.code, Some(code), "{self:?}");
         assert!(self.err.contains(words), "{words:?} is not in {:?}", self.err);
-        // The parser of the command line adds how to call it; all else is one line.
+        // The parser of the command line adds how to call it; all else is one message.
         if code != 2 {
-            assert_eq!(self.err.trim_end().lines().count(), 1, "{}", self.err);
+            assert_eq!(self.messages().len(), 1, "{}", self.err);
         }
         self
     }
+
+    /// The messages on stderr, without the source lines below them, which are checked: a line of the file with its
+    /// number, and a marker that lies under it.
+    #[track_caller]
+    pub fn messages(&self) -> Vec<&str> {
+        let mut messages = Vec::new();
+        let mut lines = self.err.lines();
+        while let Some(line) = lines.next() {
+            let Some((number, source)) = source_line(line) else {
+                messages.push(line);
+                continue;
+            };
+            assert!(!messages.is_empty() && !number.is_empty(), "a source line of no message: {}", self.err);
+            assert!(!source.contains(|c: char| c.is_control()), "{source:?}");
+            assert!(source.chars().count() <= 110, "a long line is not cut: {}", self.err);
+            let marker = lines.next().and_then(source_line).expect("a marker is below the source line");
+            assert!(marker.0.is_empty() && marker.1.trim_start().chars().all(|c| c == '^'), "{}", self.err);
+            assert!(!marker.1.trim().is_empty(), "{}", self.err);
+        }
+        messages
+    }
+}
+
+/// Number and text of a source line, or of the line with its marker.
+fn source_line(line: &str) -> Option<(&str, &str)> {
+    let (number, text) = line.split_once('|')?;
+    number.trim().chars().all(|c| c.is_ascii_digit()).then_some((number.trim(), text))
 }
 
 /// An empty folder that goes when it is dropped.

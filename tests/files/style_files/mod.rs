@@ -2,8 +2,11 @@
 
 mod broken;
 mod catalog;
+mod explaining;
 mod extending;
 mod loading;
 mod mutations;
 mod resolving;
+mod source_lines;
 mod syntax;
+mod warnings;
