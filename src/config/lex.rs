@@ -61,6 +61,8 @@ pub(super) struct Lexer<'a> {
     at: usize,
     /// The end of the line whose quotes were counted last, and whether one was left over.
     counted: (usize, bool),
+    /// Up to where a guess at the true end of a text looked in vain, or found it.
+    searched: usize,
     /// Whether a value must follow, so that `#` begins a colour rather than a comment.
     is_value_next: bool,
     /// Whether the rest of the text is lost in a comment or was given up.
@@ -75,7 +77,16 @@ pub(super) const SUBSTITUTE: char = '\u{7f}';
 impl<'a> Lexer<'a> {
     pub(super) fn new(slips: Slips<'a>, has_substitutes: bool) -> Self {
         let text = slips.text;
-        Self { slips, text, at: 0, counted: (0, false), is_value_next: false, is_cut: false, has_substitutes }
+        Self {
+            slips,
+            text,
+            at: 0,
+            counted: (0, false),
+            searched: 0,
+            is_value_next: false,
+            is_cut: false,
+            has_substitutes,
+        }
     }
 
     /// The next token and its bytes.
@@ -315,25 +326,30 @@ impl<'a> Lexer<'a> {
     }
 
     /// A quote on this line that a separator follows: the true end of a text that holds quotes.
-    fn outer_close(&self, from: usize) -> Option<usize> {
+    fn outer_close(&mut self, from: usize) -> Option<usize> {
+        // Where a search found none, the next ones would look at the same bytes.
+        if from < self.searched {
+            return None;
+        }
         let reach = self.reach(from);
-        let quotes = reach.bytes().enumerate().filter(|(_, byte)| *byte == b'"').map(|(at, _)| from + at);
-        quotes.into_iter().find(|at| self.is_followed_by_separator(at + 1))
+        self.searched = from + reach.len();
+        let mut quotes = memchr::memchr_iter(b'"', reach.as_bytes()).map(|at| from + at);
+        quotes.find(|at| self.is_followed_by_separator(at + 1))
     }
 
     fn is_followed_by_separator(&self, at: usize) -> bool {
-        let rest = self.reach(at).trim_start_matches([' ', '\t']);
-        rest.is_empty() || rest.starts_with([',', ':', ']', '}'])
+        let next = self.bytes()[at..].iter().copied().find(|byte| !matches!(byte, b' ' | b'\t'));
+        matches!(next, None | Some(b',' | b':' | b']' | b'}' | b'\n' | b'\r'))
     }
 
     /// What follows on the line, as far as guesses look.
     fn reach(&self, from: usize) -> &'a str {
-        let mut end = (from + REACH).min(self.text.len());
+        let near = &self.bytes()[from..self.bytes().len().min(from + REACH)];
+        let mut end = memchr::memchr2(b'\n', b'\r', near).map_or(from + near.len(), |length| from + length);
         while !self.text.is_char_boundary(end) {
             end -= 1;
         }
-        let reach = &self.text[from..end];
-        reach.split(['\n', '\r']).next().unwrap_or(reach)
+        &self.text[from..end]
     }
 
     /// A text whose closing quote is missing.

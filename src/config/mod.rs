@@ -1,10 +1,11 @@
 //! Style files: from JSON text to a [`Style`] in which every name is bound and every property has a value.
 //!
 //! The format is a superset of the JSON config file of [Prost2016 §3.1]. The text becomes a tree that knows the place
-//! of each key ([`parse`] makes the tree of [`syntax`], over every mistake on the way); a base is merged under it ([`extends`]); what is left is read by tables of [`Param`]s:
-//! those of `camera`, `geometry`, `light` and `transparency` lie here, those of shaders and post effects come with the
-//! [`Catalog`] that the engine hands over. Every mistake of a file is collected before any is reported, and a style with
-//! mistakes never becomes a `Style`.
+//! of each key ([`syntax`]); the parser reads on after every mistake, so that what is sound is checked all the same. A
+//! base is merged under it ([`extends`]); what is left is read by tables of [`Param`]s: those of `camera`, `geometry`,
+//! `light` and `transparency` lie here, those of shaders and post effects come with the [`Catalog`] that the engine
+//! hands over. Every mistake of a file and its bases is collected before any is reported, and a style with mistakes
+//! never becomes a `Style`.
 //!
 //! Nothing here knows of a GPU, a scene or a shader.
 

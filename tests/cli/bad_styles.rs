@@ -6,7 +6,7 @@ use super::rig::Folder;
 fn wrong_styles_are_named_with_their_place() {
     let folder = Folder::new("styles");
     let deep = "[".repeat(200_000);
-    let objects = "{\"$schema\":".repeat(100_000);
+    let objects = format!("{{\"$schema\":{}", "{\"a\":".repeat(100_000));
     let comment = "/* ".repeat(500_000);
     let cases: &[(&[u8], &str)] = &[
         (b"", "s.json: the file is empty"),
