@@ -59,7 +59,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         if let Some(noticed) = noticed {
             tell_warnings(&engine, args, &mut told);
             match draw(&mut engine, args, noticed) {
-                Err(failure) if failure.code == 1 => tell(failure.message),
+                Err(failure) if failure.code == 1 => print_message(&failure.message),
                 other => other?,
             }
         }
