@@ -164,7 +164,10 @@ pub(crate) fn scene_warnings(scene: &Scene, scene_name: &str) -> Vec<String> {
 
 /// A look or molecule that is not shipped, with those that are.
 pub(crate) fn unknown(what: &str, name: &str, among: &'static [Shipped]) -> Failure {
-    Failure::input(format!("{name}: {}", unknown_reason(what, name, among)))
+    // A name that would not show as it is, is quoted.
+    let is_plain = !name.is_empty() && !name.contains(char::is_control);
+    let shown = if is_plain { name.to_owned() } else { format!("{name:?}") };
+    Failure::input(format!("{shown}: {}", unknown_reason(what, name, among)))
 }
 
 fn unknown_reason(what: &str, name: &str, among: &'static [Shipped]) -> String {
@@ -268,8 +271,8 @@ mod tests {
         let said = load("slip", "{ \"extends\": \"eduction.json\" }", None).unwrap_err();
         let due = "cannot extend \"eduction.json\": there is no such file, and no shipped look of this name; \
                    did you mean \"education\"? allowed: advertisement, education, scientific, future";
-        assert!(said.ends_with(due), "{said}");
+        assert!(said.lines().next().is_some_and(|line| line.ends_with(due)), "{said}");
         let said = load("slip", "{ \"extends\": \"looks/education.json\" }", None).unwrap_err();
-        assert!(said.ends_with(": there is no such file"), "{said}");
+        assert!(said.lines().next().is_some_and(|line| line.ends_with(": there is no such file")), "{said}");
     }
 }
