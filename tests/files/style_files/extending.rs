@@ -125,3 +125,16 @@ fn files_are_found_beside_the_file_that_names_them() {
     assert_eq!(circle.files.len(), 3);
     assert!(lonely.to_string().contains("only a style that is a file can extend"));
 }
+
+#[test]
+fn thousands_of_unknown_or_repeated_keys_merge_in_time() {
+    let unknown: String = (0..100_000).map(|i| format!("\"key{i}\": {i}, ")).collect();
+    let selectors: String = (0..10_000).map(|i| format!("\"atom[name=N{i}]\": \"toon\", ")).collect();
+    let own = format!("{{ \"extends\": \"base\", {unknown} {} }}", "\"mapping\": {}, ".repeat(10_000));
+    let base = format!("{{ {unknown} \"mapping\": {{ {selectors} }} }}");
+    let start = std::time::Instant::now();
+    let message = extended(&own, &[("base", &base)]).unwrap_err();
+    assert!(message.ends_with(" more"), "{message}");
+    // Merging them one by one takes minutes; this takes a second or two on a busy machine.
+    assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+}
