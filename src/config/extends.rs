@@ -159,8 +159,11 @@ fn union(base: &Node, own: &Node) -> Node {
     Node { value: Tree::Object(kept.chain(own_members).cloned().collect()), span: own.span }
 }
 
+/// Makes one value of a base's and a style's own.
+type Merge = fn(&Node, &Node) -> Node;
+
 /// The parts of a style that are merged, each with its way.
-const MERGED: [(&str, fn(&Node, &Node) -> Node); 5] =
+const MERGED: [(&str, Merge); 5] =
     [("camera", union), ("geometry", union), ("transparency", union), ("mapping", union), ("shaders", merge_shaders)];
 
 /// A whole style over its base.
@@ -207,10 +210,9 @@ fn merge_entry(base: &Node, own: &Node) -> Node {
     let mut merged = union(base, own);
     if let (Tree::Object(members), Some(base), Some(own)) =
         (&mut merged.value, base.get("properties"), own.get("properties"))
+        && let Some(first) = members.iter_mut().find(|member| member.key == "properties")
     {
-        if let Some(first) = members.iter_mut().find(|member| member.key == "properties") {
-            first.value = union(base, own);
-        }
+        first.value = union(base, own);
     }
     merged
 }
