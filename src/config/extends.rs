@@ -181,20 +181,24 @@ fn union(base: &Node, own: &Node, replaced: &mut Replaced) -> Node {
     Node { value: Tree::Object(kept.chain(own_members).cloned().collect()), span: own.span }
 }
 
+/// Makes one value of a base's and a style's own.
+type Merge = fn(&Node, &Node, &mut Replaced) -> Node;
+
+/// The parts of a style that are merged, each with its way.
+const MERGED: [(&str, Merge); 5] =
+    [("camera", union), ("geometry", union), ("transparency", union), ("mapping", union), ("shaders", merge_shaders)];
+
 /// A whole style over its base.
 fn merge(base: Node, own: &Node, replaced: &mut Replaced) -> Node {
     let mut merged = union(&base, own, replaced);
     let Tree::Object(merged_members) = &mut merged.value else {
         return merged;
     };
-    for member in merged_members {
-        let (Some(base), Some(own)) = (base.get(&member.key), own.get(&member.key)) else {
-            continue;
-        };
-        match member.key.as_str() {
-            "camera" | "geometry" | "transparency" | "mapping" => member.value = union(base, own, replaced),
-            "shaders" => member.value = merge_shaders(base, own, replaced),
-            _ => {}
+    for (key, merge) in MERGED {
+        // A key that is written twice is a mistake that was found already: merging each would be a way to fill memory.
+        let first = merged_members.iter_mut().find(|member| member.key == key);
+        if let (Some(member), Some(base), Some(own)) = (first, base.get(key), own.get(key)) {
+            member.value = merge(base, own, replaced);
         }
     }
     merged
@@ -232,10 +236,9 @@ fn merge_entry(base: &Node, own: &Node, replaced: &mut Replaced) -> Node {
     let mut merged = union(base, own, replaced);
     if let (Tree::Object(members), Some(base), Some(own)) =
         (&mut merged.value, base.get("properties"), own.get("properties"))
+        && let Some(first) = members.iter_mut().find(|member| member.key == "properties")
     {
-        for member in members.iter_mut().filter(|member| member.key == "properties") {
-            member.value = union(base, own, replaced);
-        }
+        first.value = union(base, own, replaced);
     }
     merged
 }

@@ -252,4 +252,42 @@ mod tests {
         assert!(!buried(0.8, 0.8, 1.59, 0.14), "the circle of contact is narrower than the bond");
         assert!(buried(3.0, 0.5, 1.0, 0.14), "one sphere within the other");
     }
+
+    #[test]
+    fn a_neighbour_is_the_first_other_bond_of_either_atom() {
+        use crate::scene::{Element, FileBond, MoleculeBuilder, Name, NewAtom, Report};
+        let mut builder = MoleculeBuilder::default();
+        for i in 0..12 {
+            builder.push(&NewAtom {
+                position: glam::DVec3::new(f64::from(i % 4) * 2.5, f64::from(i / 4) * 2.5, 0.0),
+                element: Element::CARBON,
+                name: Name::default(),
+                alt_loc: 0,
+                occupancy: 1.0,
+                residue_name: Name::default(),
+                residue_number: 0,
+                insertion_code: 0,
+                is_hetero: false,
+                chain: b"",
+                model: 1,
+            });
+        }
+        let pairs = [(0, 1), (0, 4), (4, 5), (1, 5), (5, 9), (4, 8), (2, 3)];
+        let bonds = pairs.map(|(a, b)| FileBond { a, b, order: 2 });
+        let molecule = builder.finish(&bonds, &mut Report::default()).expect("twelve atoms");
+        assert_eq!(molecule.bonds.len(), bonds.len());
+        let neighbours = Neighbours::new(&molecule, true);
+        for bond in &molecule.bonds {
+            let position = |index: u32| molecule.atoms[index as usize].position;
+            let searched = molecule.bonds.iter().find_map(|other| {
+                let shares = |index| index == bond.a || index == bond.b;
+                match (shares(other.a), shares(other.b)) {
+                    (true, false) => Some(position(other.b) - position(other.a)),
+                    (false, true) => Some(position(other.a) - position(other.b)),
+                    _ => None,
+                }
+            });
+            assert_eq!(neighbours.direction(&molecule, bond), searched, "{bond:?}");
+        }
+    }
 }

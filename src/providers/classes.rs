@@ -32,25 +32,31 @@ impl AtomClasses {
         let mut names = Values::default();
         let mut residues = Values::default();
         let mut models = Values::default();
-        let groups: Vec<[u32; 3]> = molecule
+        // First the residues, of which there are fewer: what follows needs one number of each.
+        let mut group_of: HashMap<(Name, u32, u32), u32> = HashMap::new();
+        let mut groups: Vec<[u32; 3]> = Vec::new();
+        let of_residue: Vec<u32> = molecule
             .residues
             .iter()
             .map(|of| {
-                let name = residues.number(of.name, |name: &Name| name.to_string());
-                [name, of.chain, models.number(of.model, u32::to_string)]
+                *group_of.entry((of.name, of.chain, of.model)).or_insert_with(|| {
+                    let name = residues.number(of.name, Name::to_string);
+                    groups.push([name, of.chain, models.number(of.model, u32::to_string)]);
+                    groups.len() as u32 - 1
+                })
             })
             .collect();
-        let mut class_of: HashMap<(Name, u8, [u32; 3]), u32> = HashMap::new();
+        let mut class_of: HashMap<(Name, u8, u32), u32> = HashMap::new();
         let mut classes = Vec::new();
         let of_atom: Vec<u32> = molecule
             .atoms
             .iter()
             .map(|atom| {
-                let group = groups[atom.residue as usize];
+                let group = of_residue[atom.residue as usize];
                 *class_of.entry((atom.name, atom.element.number(), group)).or_insert_with(|| {
                     let element = elements.number(atom.element.number(), |_| atom.element.symbol().to_owned());
                     let name = names.number(atom.name, Name::to_string);
-                    let [residue, chain, model] = group;
+                    let [residue, chain, model] = groups[group as usize];
                     classes.push([element, name, residue, chain, model]);
                     classes.len() as u32 - 1
                 })

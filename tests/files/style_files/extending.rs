@@ -133,6 +133,17 @@ fn files_are_found_beside_the_file_that_names_them() {
 }
 
 #[test]
+fn thousands_of_unknown_or_repeated_keys_merge_in_time() {
+    let unknown: String = (0..100_000).map(|i| format!("\"key{i}\": {i}, ")).collect();
+    let selectors: String = (0..10_000).map(|i| format!("\"atom[name=N{i}]\": \"toon\", ")).collect();
+    let own = format!("{{ \"extends\": \"base\", {unknown} {} }}", "\"mapping\": {}, ".repeat(10_000));
+    let base = format!("{{ {unknown} \"mapping\": {{ {selectors} }} }}");
+    // Comparing each with each would take minutes.
+    let message = extended(&own, &[("base", &base)]).unwrap_err();
+    assert!(message.ends_with(" more"), "{message}");
+}
+
+#[test]
 fn a_style_without_its_base_is_checked_itself() {
     // What the base might hold is no mistake: the shader of `a`, and what is called `flat`.
     let own = r#"{ "extends": "none", "camera": { "zoom": 0 }, "mapping": { "atom": "flat", "atm": null },

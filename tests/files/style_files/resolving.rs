@@ -34,7 +34,7 @@ fn style_of_rules<'a>(rules: impl IntoIterator<Item = (&'a str, bool)>) -> Style
     let (mut mapping, mut shaders) = (Vec::new(), Vec::new());
     for (i, (selector, hides)) in rules.into_iter().enumerate() {
         let target = if hides { "null".to_owned() } else { format!("\"s{i}\"") };
-        mapping.push(format!("{}: {target}", serde_json::to_string(selector).expect("a text")));
+        mapping.push(format!("{}: {target}", serde_json::Value::from(selector)));
         shaders.push(format!("{{ \"name\": \"s{i}\", \"shader\": \"unlit\" }}"));
     }
     style_of(&format!("{{ \"mapping\": {{ {} }}, \"shaders\": [{}] }}", mapping.join(", "), shaders.join(", ")))
