@@ -22,6 +22,8 @@ pub struct CatalogEntry {
     pub name: &'static str,
     /// What it is for.
     pub role: Role,
+    /// One sentence for the manual, the schema and the editor.
+    pub doc: &'static str,
     /// Its parameters.
     pub params: &'static [Param],
     /// Whether this version draws it. One that is not drawn is part of the contract all the same: it loads with any
@@ -67,6 +69,9 @@ impl<'a> Catalog<'a> {
             if self.shaders[..i].iter().any(|earlier| earlier.name == entry.name) {
                 wrong.push(format!("{:?} is registered twice", entry.name));
             }
+            if !entry.doc.ends_with('.') {
+                wrong.push(format!("{:?}: its doc is not a sentence", entry.name));
+            }
             wrong.extend(check_table(entry.params).into_iter().map(|reason| format!("{}: {reason}", entry.name)));
         }
         wrong
@@ -79,7 +84,8 @@ mod tests {
 
     #[test]
     fn a_catalog_without_basic_is_found() {
-        let entry = CatalogEntry { name: "fog", role: Role::PostEffect, params: &[], drawn: true };
+        let entry =
+            CatalogEntry { name: "fog", role: Role::PostEffect, doc: "Hides what is far.", params: &[], drawn: true };
         let catalog = Catalog { shaders: &[entry, entry], kinds: &[] };
         assert_eq!(catalog.check(), ["\"basic\" is not a drawn shader of objects", "\"fog\" is registered twice"]);
     }

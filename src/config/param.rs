@@ -112,13 +112,15 @@ pub struct Param {
     pub unit: &'static str,
     /// One sentence for the manual, the schema and the editor.
     pub doc: &'static str,
+    /// Values that show what it does, as JSON: the editor offers them, and the manual has a picture of each.
+    pub examples: &'static [&'static str],
     /// Whether this version draws it; one that is not drawn loads with one warning.
     pub drawn: bool,
 }
 
 impl Param {
     const fn new(name: &'static str, kind: Kind, default: Default) -> Self {
-        Self { name, kind, default, range: None, unit: "", doc: "", drawn: true }
+        Self { name, kind, default, range: None, unit: "", doc: "", examples: &[], drawn: true }
     }
 
     /// A number.
@@ -211,6 +213,12 @@ impl Param {
     /// One sentence about it.
     pub const fn doc(mut self, doc: &'static str) -> Self {
         self.doc = doc;
+        self
+    }
+
+    /// Values that show what it does, as JSON texts; [`check_table`] tries each.
+    pub const fn examples(mut self, examples: &'static [&'static str]) -> Self {
+        self.examples = examples;
         self
     }
 
@@ -308,6 +316,11 @@ pub fn check_table(params: &[Param]) -> Vec<String> {
         if param.doc.is_empty() {
             wrong.push(format!("{name:?} has no doc"));
         }
+        for example in param.examples {
+            if let Err(reason) = super::read::check_example(param, example) {
+                wrong.push(format!("{name:?}: the example {example} is wrong: {reason}"));
+            }
+        }
         if param.range.is_some_and(|(lowest, highest)| lowest.is_nan() || highest.is_nan() || lowest > highest) {
             wrong.push(format!("{name:?}: the range is empty"));
         }
@@ -349,6 +362,7 @@ mod tests {
             Param::numbers("layers", &[0.0]).of_len(4).doc("d"),
             Param::count("n", 1),
             Param::boolean("Flag", true).doc("d"),
+            Param::number("x", 1.0).range(0.0, 1.0).doc("d").examples(&["0.5", "7", "07"]),
         ];
         let wrong = check_table(&params).join("\n");
         for part in [
@@ -359,6 +373,8 @@ mod tests {
             "declared twice",
             "no doc",
             "\"Flag\" is not",
+            "\"x\": the example 7 is wrong: \"x\" is 7, but must lie in 0 to 1",
+            "\"x\": the example 07 is wrong: numbers are written like",
         ] {
             assert!(wrong.contains(part), "{part} is not in\n{wrong}");
         }

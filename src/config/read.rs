@@ -5,8 +5,8 @@ use super::error::{Mistakes, Notice, Place, Problem, Warning};
 use super::hint::{Hint, quote};
 use super::length::Length;
 use super::param::{Kind, Param, Value};
-use super::source::Texts;
-use super::syntax::{Member, Node, Span, Tree};
+use super::source::{Source, Texts};
+use super::syntax::{self, Member, Node, Span, Tree};
 use super::values::Values;
 
 /// A problem and the value it lies in.
@@ -136,6 +136,13 @@ fn read(param: &Param, node: &Node, with_hints: bool) -> Result<Value, Wrong> {
         Kind::Numbers { len } => numbers(param, len, node).map(Value::Numbers),
         Kind::Vector => vector(param, node).map(Value::Vector),
     }
+}
+
+/// Whether a parameter accepts an example of its table, or why not.
+pub(super) fn check_example(param: &Param, json: &str) -> Result<(), String> {
+    let text = syntax::parse(&Source::new("example", json), 0, &mut Mistakes::default());
+    let text = text.map_err(|wrong| wrong.1.to_string())?;
+    read(param, &text.root, false).map(drop).map_err(|(_, problem)| problem.to_string())
 }
 
 fn out_of_range(param: &Param, value: f64, allowed: String) -> Problem {
