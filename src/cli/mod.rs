@@ -4,6 +4,7 @@ mod copy;
 mod gallery;
 mod inputs;
 mod render;
+mod schema;
 
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -29,6 +30,8 @@ enum Command {
     Gallery(gallery::Args),
     /// Copy a shipped look to a file, to start from
     Copy(copy::Args),
+    /// Print the JSON Schema of style files, for editors
+    Schema(schema::Args),
 }
 
 /// Why a command ended, and with which exit code.
@@ -72,6 +75,7 @@ pub fn run() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Gallery(args) => gallery::run(&args),
         Command::Copy(args) => copy::run(&args),
+        Command::Schema(args) => schema::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -302,6 +302,51 @@ impl Param {
     }
 }
 
+impl Param {
+    /// What it holds and its default, for the manual and the editor, in Markdown.
+    pub fn facts(&self) -> String {
+        let words = |of: &[&str]| of.iter().map(|word| format!("`\"{word}\"`")).collect::<Vec<_>>().join(", ");
+        let numbers = |what: &str| {
+            let (lowest, highest) = self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+            let bounds = match (lowest.is_finite(), highest.is_finite()) {
+                (true, true) => format!(" from {lowest} to {highest}"),
+                (true, false) => format!(", {lowest} or more"),
+                (false, true) => format!(", {highest} or less"),
+                (false, false) => String::new(),
+            };
+            let unit = if self.unit.is_empty() { String::new() } else { format!(" ({})", self.unit) };
+            format!("{what}{bounds}{unit}")
+        };
+        let holds = match self.kind {
+            Kind::Number => numbers("a number"),
+            Kind::Count => numbers("a whole number"),
+            Kind::Length => numbers("a length"),
+            Kind::ChoiceOrLength(of) => format!("{}, or {}", words(of), numbers("a length")),
+            Kind::Color => "a colour".to_owned(),
+            Kind::BaseColor => format!("{}, or a colour", words(&BaseColor::NAMES)),
+            Kind::Choice(of) => format!("one of {}", words(of)),
+            Kind::Boolean | Kind::BooleanOrText => "`true` or `false`".to_owned(),
+            Kind::Numbers { len: 0 } => numbers("a list of numbers"),
+            Kind::Numbers { len } => numbers(&format!("a list of {len} numbers")),
+            Kind::Vector => numbers("three numbers"),
+        };
+        let default = match self.default {
+            Default::Unset => "unset (`null`)".to_owned(),
+            Default::Number(n) | Default::Radii(n) => format!("`{n}`"),
+            Default::Count(n) => format!("`{n}`"),
+            Default::Text(text) => format!("`\"{text}\"`"),
+            Default::Color(color) => format!("`\"{color}\"`"),
+            Default::BaseColor(color) => format!("`\"{color}\"`"),
+            Default::Boolean(value) => format!("`{value}`"),
+            Default::Numbers(list) => format!("`{list:?}`"),
+            Default::Vector([x, y, z]) => format!("`[{x}, {y}, {z}]`"),
+        };
+        let mut holds = holds.chars();
+        let first: String = holds.next().into_iter().flat_map(char::to_uppercase).collect();
+        format!("{first}{}. Default: {default}.", holds.as_str())
+    }
+}
+
 /// What is wrong with a table; empty if nothing is. For the test that every table of the program goes through.
 pub fn check_table(params: &[Param]) -> Vec<String> {
     let mut wrong = Vec::new();

@@ -4,3 +4,4 @@ mod scene_data;
 mod scene_mutations;
 mod scene_shipped;
 mod style_files;
+mod style_schema;

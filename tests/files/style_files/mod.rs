@@ -4,4 +4,4 @@ mod broken;
 mod catalog;
 mod extending;
 mod loading;
-mod mutations;
+pub mod mutations;

@@ -1,0 +1,106 @@
+//! The schema of `mapping`: selectors as keys, names of shaders as values.
+
+use serde_json::{Map, Value, json};
+
+use super::{NOT_DRAWN, patterns};
+use crate::config::catalog::{Catalog, Role};
+use crate::config::selector::{ObjectKind, Selector};
+
+/// Selectors that the editor offers, beside one for each type that is drawn.
+const OFFERED: [(&str, &str); 9] = [
+    ("*", "Everything."),
+    ("atom[element=C]", "Atoms of one element."),
+    ("atom[element=H]", "Atoms of one element."),
+    ("atom[element=N]", "Atoms of one element."),
+    ("atom[element=O]", "Atoms of one element."),
+    ("atom[residue=HOH]", "Atoms of one residue: water."),
+    ("atom[name=CA]", "Atoms of one name: the backbone's carbon."),
+    ("*[chain=A]", "Everything of one chain."),
+    ("connector[element=H]", "Bonds that end at an atom of this element."),
+];
+
+/// What the editor says of a key that is no selector.
+const NO_SELECTOR: &str = "This is no selector: write a type (atom, connector or *), then any number of \
+                           [attribute=value], such as atom[element=O]. Molecules have the attributes element, name, \
+                           residue, chain and model.";
+
+/// The schema of the object `mapping`.
+pub(super) fn mapping(catalog: &Catalog<'_>) -> Value {
+    let rule = |doc: &str| json!({ "description": doc, "type": ["string", "null"], "allOf": [{ "$ref": "#/definitions/target" }] });
+    let mut properties = Map::new();
+    for kind in catalog.kinds {
+        properties.insert(kind.name().to_owned(), rule(kind.doc()));
+    }
+    for (selector, doc) in OFFERED {
+        let kind = Selector::parse(selector).ok().and_then(|selector| selector.kind());
+        if kind.is_none_or(|kind| catalog.kinds.contains(&kind)) {
+            properties.insert(selector.to_owned(), rule(doc));
+        }
+    }
+    properties.insert("post_effects".to_owned(), post_effects(catalog));
+    let (drawn, not_drawn): (Vec<_>, Vec<_>) =
+        ObjectKind::ALL.into_iter().partition(|kind| catalog.kinds.contains(kind));
+    let some = |kinds: Vec<ObjectKind>| kinds.into_iter().map(Some).collect::<Vec<_>>();
+    let mut patterns = Map::new();
+    let any = [some(drawn), vec![None]].concat();
+    patterns.insert(patterns::selector(&any), json!({ "$ref": "#/definitions/target" }));
+    if !not_drawn.is_empty() {
+        let message = format!("objects of this type are {NOT_DRAWN}");
+        let rule = json!({ "deprecationMessage": message, "allOf": [{ "$ref": "#/definitions/target" }] });
+        patterns.insert(patterns::selector(&some(not_drawn)), rule);
+    }
+    json!({
+        "type": "object",
+        "description": "Which shader draws what. More attributes win, then a type over *, then the later rule. What no \
+                        rule selects is drawn with basic; null hides.",
+        // Alone, so that its words are said of keys and not of a mapping that is no object.
+        "allOf": [{
+            "properties": properties,
+            "patternProperties": patterns,
+            "additionalProperties": false,
+            "errorMessage": NO_SELECTOR,
+        }],
+    })
+}
+
+/// What draws: a name of `shaders`, of a base, or of a registered shader.
+pub(super) fn target(catalog: &Catalog<'_>) -> Value {
+    named(catalog, Role::Object, &["string", "null"])
+}
+
+fn post_effects(catalog: &Catalog<'_>) -> Value {
+    let mut schema = json!({
+        "type": "array",
+        "description": "Post effects, in the order in which they change the picture.",
+        "items": named(catalog, Role::PostEffect, &["string"]),
+    });
+    if catalog.drawn_names(Some(Role::PostEffect)).next().is_none() {
+        schema["doNotSuggest"] = true.into();
+    }
+    schema
+}
+
+/// A name of one role. Any text may be one: what the file calls its shaders, no schema can know.
+fn named(catalog: &Catalog<'_>, role: Role, types: &[&str]) -> Value {
+    let of_role = || catalog.shaders.iter().filter(|entry| entry.role == role);
+    let drawn = || of_role().filter(|entry| entry.drawn);
+    let names: Vec<&str> = drawn().map(|entry| entry.name).collect();
+    let docs: Vec<&str> = drawn().map(|entry| entry.doc).collect();
+    let not_drawn = of_role().filter(|entry| !entry.drawn).map(|entry| entry.name);
+    let known = json!({ "enum": names, "enumDescriptions": docs });
+    let mut alternatives = vec![json!({})];
+    if !names.is_empty() {
+        alternatives.insert(0, known);
+    }
+    let description = match role {
+        Role::Object => "The name of an entry of shaders, or of a shader with its defaults; null hides.",
+        Role::PostEffect => "The name of an entry of shaders, or of a post effect with its defaults.",
+    };
+    json!({
+        "type": types,
+        "description": description,
+        "anyOf": alternatives,
+        "if": { "type": "string", "pattern": patterns::one_of(not_drawn) },
+        "then": { "deprecationMessage": NOT_DRAWN },
+    })
+}
