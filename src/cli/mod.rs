@@ -3,6 +3,7 @@
 mod copy;
 mod gallery;
 mod inputs;
+mod manual;
 mod render;
 mod schema;
 

@@ -1,11 +1,17 @@
-//! `restyle schema`: the JSON Schema of style files.
+//! `restyle schema`: the JSON Schema of style files, and the manual that is made from the same tables.
 
-use super::{Failure, answer};
+use std::path::PathBuf;
+
+use super::{Failure, answer, manual};
 use crate::config::{self, Catalog};
 use crate::engine;
 
 #[derive(Debug, clap::Args)]
-pub(super) struct Args {}
+pub(super) struct Args {
+    /// Write the manual of style files with its pictures into this folder instead
+    #[arg(long, value_name = "DIR")]
+    manual: Option<PathBuf>,
+}
 
 /// The schema as its file holds it.
 pub(super) fn text() -> String {
@@ -14,6 +20,12 @@ pub(super) fn text() -> String {
     format!("{schema:#}\n")
 }
 
-pub(super) fn run(_args: &Args) -> Result<(), Failure> {
-    answer(text().trim_end())
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    match &args.manual {
+        Some(folder) => {
+            let entries = engine::catalog();
+            manual::write(folder, &Catalog { shaders: &entries, kinds: engine::DRAWN_KINDS })
+        }
+        None => answer(text().trim_end()),
+    }
 }

@@ -43,7 +43,7 @@ pub const PARAMS: &[Param] = &[
         .examples(&[r#""camera""#, r#""scene""#]),
     Param::optional_length("range")
         .doc("Where a point light has faded to nothing; unset: it does not fade.")
-        .examples(&["null", "3", "2"]),
+        .examples(&["null", "2", "1.4"]),
 ];
 
 /// What kind of light it is.

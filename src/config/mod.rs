@@ -19,6 +19,7 @@ mod glob;
 pub mod hint;
 pub mod length;
 pub mod light;
+pub mod manual;
 pub mod param;
 mod read;
 pub mod schema;

@@ -14,14 +14,14 @@ use serde_json::Value;
 use super::style_files::mutations::Random;
 
 /// The catalog of the program.
-struct House(Vec<CatalogEntry>);
+pub struct House(pub Vec<CatalogEntry>);
 
 impl House {
-    fn new() -> House {
+    pub fn new() -> House {
         House(engine::catalog())
     }
 
-    fn catalog(&self) -> Catalog<'_> {
+    pub fn catalog(&self) -> Catalog<'_> {
         Catalog { shaders: &self.0, kinds: engine::DRAWN_KINDS }
     }
 
@@ -29,7 +29,7 @@ impl House {
         schema(&self.catalog())
     }
 
-    fn validator(&self) -> Validator {
+    pub fn validator(&self) -> Validator {
         jsonschema::draft7::new(&self.schema()).unwrap_or_else(|error| panic!("the schema is no schema: {error}"))
     }
 
@@ -40,7 +40,7 @@ impl House {
     }
 }
 
-fn at(path: &str) -> std::path::PathBuf {
+pub fn at(path: &str) -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
@@ -113,7 +113,7 @@ fn is_beyond_a_schema(mistake: &Mistake, style: &Value) -> bool {
 
 /// What schema and loader say of one text.
 #[derive(Debug, PartialEq)]
-enum Verdict {
+pub enum Verdict {
     BothTake,
     BothRefuse,
     /// The codes of what only the loader refuses.
@@ -121,7 +121,7 @@ enum Verdict {
 }
 
 /// Checks both verdicts on one text.
-fn judge(house: &House, validator: &Validator, text: &str) -> Verdict {
+pub fn judge(house: &House, validator: &Validator, text: &str) -> Verdict {
     let loaded = house.load(text).map(drop);
     let Ok(value) = parse(text) else {
         assert!(loaded.is_err(), "the loader takes what is no JSON:\n{text}");

@@ -24,6 +24,9 @@ const NO_SELECTOR: &str = "This is no selector: write a type (atom, connector or
                            [attribute=value], such as atom[element=O]. Molecules have the attributes element, name, \
                            residue, chain and model.";
 
+/// What the editor says of a rule; of one that is offered, it says which objects it picks.
+const TARGET: &str = "The name of an entry of shaders, or of a shader with its defaults; null hides.";
+
 /// The schema of the object `mapping`.
 pub(super) fn mapping(catalog: &Catalog<'_>) -> Value {
     let rule = |doc: &str| json!({ "description": doc, "type": ["string", "null"], "allOf": [{ "$ref": "#/definitions/target" }] });
@@ -43,10 +46,10 @@ pub(super) fn mapping(catalog: &Catalog<'_>) -> Value {
     let some = |kinds: Vec<ObjectKind>| kinds.into_iter().map(Some).collect::<Vec<_>>();
     let mut patterns = Map::new();
     let any = [some(drawn), vec![None]].concat();
-    patterns.insert(patterns::selector(&any), json!({ "$ref": "#/definitions/target" }));
+    patterns.insert(patterns::selector(&any), rule(TARGET));
     if !not_drawn.is_empty() {
         let message = format!("objects of this type are {NOT_DRAWN}");
-        let rule = json!({ "deprecationMessage": message, "allOf": [{ "$ref": "#/definitions/target" }] });
+        let rule = json!({ "description": TARGET, "deprecationMessage": message, "allOf": [{ "$ref": "#/definitions/target" }] });
         patterns.insert(patterns::selector(&some(not_drawn)), rule);
     }
     json!({
@@ -92,13 +95,8 @@ fn named(catalog: &Catalog<'_>, role: Role, types: &[&str]) -> Value {
     if !names.is_empty() {
         alternatives.insert(0, known);
     }
-    let description = match role {
-        Role::Object => "The name of an entry of shaders, or of a shader with its defaults; null hides.",
-        Role::PostEffect => "The name of an entry of shaders, or of a post effect with its defaults.",
-    };
     json!({
         "type": types,
-        "description": description,
         "anyOf": alternatives,
         "if": { "type": "string", "pattern": patterns::one_of(not_drawn) },
         "then": { "deprecationMessage": NOT_DRAWN },
