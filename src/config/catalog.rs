@@ -1,7 +1,7 @@
 //! What a style can name: the shaders and post effects of the program, handed over by the engine.
 
 use super::param::{Param, check_table};
-use super::selector::ObjectKind;
+use super::selector::{Attribute, ObjectKind};
 
 /// The shader of everything that nothing selects, and of what is not drawn yet.
 pub const BASIC: &str = "basic";
@@ -52,6 +52,12 @@ impl<'a> Catalog<'a> {
             .iter()
             .filter(move |entry| entry.drawn && role.is_none_or(|role| role == entry.role))
             .map(|entry| entry.name)
+    }
+
+    /// What selectors can ask of the types that are drawn.
+    pub fn attributes(&self) -> impl Iterator<Item = Attribute> + use<'a> {
+        let kinds = self.kinds;
+        Attribute::ALL.into_iter().filter(move |of| kinds.iter().any(|kind| kind.attributes().contains(of)))
     }
 
     /// The shader that stands in.

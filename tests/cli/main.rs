@@ -9,4 +9,5 @@ mod bad_styles;
 mod extremes;
 mod pictures;
 mod rig;
+mod schema;
 mod shipped;

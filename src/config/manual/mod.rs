@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use super::catalog::{Catalog, Role};
 use super::param::Param;
 use super::sections::SECTIONS;
-use super::selector::{Attribute, ObjectKind};
+use super::selector::ObjectKind;
 
 pub use strips::{Molecule, Strip, strips};
 
@@ -58,13 +58,13 @@ fn selectors(catalog: &Catalog<'_>) -> String {
         let _ = writeln!(text, "| `{}` | {} |", kind.name(), kind.doc());
     }
     text.push_str("| `*` | Everything. |\n\n| attribute | is |\n|---|---|\n");
-    for attribute in Attribute::ALL.iter().filter(|a| catalog.kinds.iter().any(|kind| kind.attributes().contains(a))) {
+    for attribute in catalog.attributes() {
         let _ = writeln!(text, "| `{}` | {} |", attribute.name(), attribute.doc());
     }
     text.push_str(
-        "\n`*` in a value stands for any characters and `?` for one; upper and lower case differ except in `element`. A \
-         value that holds `]` is quoted: `atom[name=\"A]\"]`. Of two rules that select the same object, the one with more \
-         attributes wins, then a type over `*`, then the later one; a base comes before what extends it.\n",
+        "\n`*` in a value stands for any characters and `?` for one; upper and lower case differ except in `element`. \
+         A value that holds `]` is quoted: `atom[name=\"A]\"]`. Of two rules that select the same object, the one with \
+         more attributes wins, then a type over `*`, then the later one; a base comes before what extends it.\n",
     );
     text
 }

@@ -96,7 +96,7 @@ const SETTINGS: &[Setting] = &[
         param: "bond_orders",
         scene: ACRYLONITRILE,
         said: "Acrylonitrile, from a PDB file that says of what order its bonds are.",
-        style: r##"{ "geometry": { "scale": 0.18, "bond_radius": "0.09A" }, "camera": { "zoom": 1.3 } }"##,
+        style: r##"{ "geometry": { "scale": 0.18, "bond_radius": "0.1A" }, "camera": { "zoom": 1.9, "target": [-0.1, 0.05, 0] } }"##,
     },
     Setting {
         group: "geometry",

@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::{NOT_DRAWN, patterns};
 use crate::config::catalog::{Catalog, Role};
-use crate::config::selector::{ObjectKind, Selector};
+use crate::config::selector::{Attribute, ObjectKind, Selector};
 
 /// Selectors that the editor offers, beside one for each type that is drawn.
 const OFFERED: [(&str, &str); 9] = [
@@ -20,16 +20,24 @@ const OFFERED: [(&str, &str); 9] = [
 ];
 
 /// What the editor says of a key that is no selector.
-const NO_SELECTOR: &str = "This is no selector: write a type (atom, connector or *), then any number of \
-                           [attribute=value], such as atom[element=O]. Molecules have the attributes element, name, \
-                           residue, chain and model.";
+fn no_selector(catalog: &Catalog<'_>) -> String {
+    let kinds: Vec<&str> = catalog.kinds.iter().map(|kind| kind.name()).collect();
+    let attributes: Vec<&str> = catalog.attributes().map(Attribute::name).collect();
+    format!(
+        "This is no selector: write a type ({} or *), then any number of [attribute=value], such as atom[element=O]. \
+         Attributes: {}.",
+        kinds.join(", "),
+        attributes.join(", ")
+    )
+}
 
 /// What the editor says of a rule; of one that is offered, it says which objects it picks.
 const TARGET: &str = "The name of an entry of shaders, or of a shader with its defaults; null hides.";
 
 /// The schema of the object `mapping`.
 pub(super) fn mapping(catalog: &Catalog<'_>) -> Value {
-    let rule = |doc: &str| json!({ "description": doc, "type": ["string", "null"], "allOf": [{ "$ref": "#/definitions/target" }] });
+    let target = || json!([{ "$ref": "#/definitions/target" }]);
+    let rule = |doc: &str| json!({ "description": doc, "type": ["string", "null"], "allOf": target() });
     let mut properties = Map::new();
     for kind in catalog.kinds {
         properties.insert(kind.name().to_owned(), rule(kind.doc()));
@@ -49,7 +57,7 @@ pub(super) fn mapping(catalog: &Catalog<'_>) -> Value {
     patterns.insert(patterns::selector(&any), rule(TARGET));
     if !not_drawn.is_empty() {
         let message = format!("objects of this type are {NOT_DRAWN}");
-        let rule = json!({ "description": TARGET, "deprecationMessage": message, "allOf": [{ "$ref": "#/definitions/target" }] });
+        let rule = json!({ "description": TARGET, "deprecationMessage": message, "allOf": target() });
         patterns.insert(patterns::selector(&some(not_drawn)), rule);
     }
     json!({
@@ -61,7 +69,7 @@ pub(super) fn mapping(catalog: &Catalog<'_>) -> Value {
             "properties": properties,
             "patternProperties": patterns,
             "additionalProperties": false,
-            "errorMessage": NO_SELECTOR,
+            "errorMessage": no_selector(catalog),
         }],
     })
 }

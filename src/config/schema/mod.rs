@@ -35,7 +35,11 @@ pub fn schema(catalog: &Catalog<'_>) -> Value {
     let mut properties = Map::new();
     properties.insert(
         "$schema".to_owned(),
-        json!({ "type": "string", "description": "Where an editor finds this schema, relative to the style.", "default": FILE }),
+        json!({
+            "type": "string",
+            "description": "Where an editor finds this schema, relative to the style.",
+            "default": FILE,
+        }),
     );
     properties.insert(
         "version".to_owned(),

@@ -31,7 +31,7 @@ pub(super) fn definitions() -> Map<String, Value> {
         json!({
             "type": ["string", "number"],
             "pattern": patterns::length(signed),
-            "patternErrorMessage": if signed { NO_LENGTH.to_owned() } else { format!("{NO_LENGTH} It cannot be negative.") },
+            "patternErrorMessage": format!("{NO_LENGTH}{}", if signed { "" } else { " It cannot be negative." }),
             "defaultSnippets": snippets::lengths(),
         })
     };
@@ -146,7 +146,7 @@ fn example(text: &str) -> Value {
 }
 
 /// The default as a file would write it.
-fn default(param: &Param) -> Value {
+pub(super) fn default(param: &Param) -> Value {
     match param.default {
         Default::Unset => Value::Null,
         Default::Number(n) | Default::Radii(n) => number(n),

@@ -1,8 +1,9 @@
 //! What an editor inserts: whole pieces of a style, in the syntax of VS Code's snippets.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::FILE;
+use super::param::default;
 use crate::config::catalog::{Catalog, Role};
 use crate::config::light;
 use crate::config::param::Kind;
@@ -22,15 +23,17 @@ pub(super) fn whole_style() -> Value {
     })
 }
 
-/// An entry of `shaders` for each shader that is drawn, with the properties that a designer reaches for first: those
-/// of its table whose default a picture can hardly do with.
+/// An entry of `shaders` for each shader that is drawn, with its first property as it is by default.
 pub(super) fn shaders(catalog: &Catalog<'_>) -> Value {
     let of = |role| catalog.shaders.iter().filter(move |entry| entry.drawn && entry.role == role);
     let entries = of(Role::Object).chain(of(Role::PostEffect)).map(|entry| {
+        let first = entry.params.iter().find(|param| param.drawn);
+        let properties: Map<String, Value> =
+            first.into_iter().map(|param| (param.name.to_owned(), default(param))).collect();
         json!({
             "label": entry.name,
             "description": entry.doc,
-            "body": { "name": "${1:name}", "shader": entry.name, "properties": {} },
+            "body": { "name": "${1:name}", "shader": entry.name, "properties": properties },
         })
     });
     entries.collect()
@@ -70,7 +73,11 @@ pub(super) fn lengths() -> Value {
 pub(super) fn colors() -> Value {
     json!([
         { "label": "\"#rrggbb\"", "description": "Red, green, blue in hexadecimal.", "body": "#${1:c0392b}" },
-        { "label": "[r, g, b]", "description": "Red, green, blue in 0 to 255.", "body": ["^${1:192}", "^${2:57}", "^${3:43}"] },
+        {
+            "label": "[r, g, b]",
+            "description": "Red, green, blue in 0 to 255.",
+            "body": ["^${1:192}", "^${2:57}", "^${3:43}"],
+        },
         { "label": "\"teal\"", "description": "A CSS name.", "body": "${1:teal}" },
     ])
 }
