@@ -52,10 +52,11 @@ fn parse(text: &str) -> Result<Value, String> {
 fn styles() -> Vec<(String, String)> {
     let mut styles = Vec::new();
     for folder in ["styles", "tests/fixtures/prost2016"] {
-        for entry in std::fs::read_dir(at(folder)).unwrap() {
-            let name = entry.unwrap().file_name().to_string_lossy().into_owned();
+        for entry in std::fs::read_dir(at(folder)).expect("a folder of the project") {
+            let name = entry.expect("a file of the project").file_name().to_string_lossy().into_owned();
             if name.ends_with(".json") && name != schema::FILE {
-                styles.push((format!("{folder}/{name}"), std::fs::read_to_string(at(folder).join(&name)).unwrap()));
+                let text = std::fs::read_to_string(at(folder).join(&name)).expect("a style is text");
+                styles.push((format!("{folder}/{name}"), text));
             }
         }
     }
@@ -188,9 +189,10 @@ fn tokens(text: &str) -> Vec<Token> {
         }
     }
     let options = jsonc_parser::ParseOptions::default();
-    let parsed = jsonc_parser::parse_to_ast(text, &jsonc_parser::CollectOptions::default(), &options).unwrap();
+    let parsed = jsonc_parser::parse_to_ast(text, &jsonc_parser::CollectOptions::default(), &options);
     let mut tokens = Vec::new();
-    walk(&parsed.value.unwrap(), &mut tokens);
+    let root = parsed.ok().and_then(|parsed| parsed.value).expect("only JSON is taken apart");
+    walk(&root, &mut tokens);
     tokens
 }
 

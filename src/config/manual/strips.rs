@@ -96,7 +96,7 @@ const SETTINGS: &[Setting] = &[
         param: "bond_orders",
         scene: ACRYLONITRILE,
         said: "Acrylonitrile, from a PDB file that says of what order its bonds are.",
-        style: r##"{ "geometry": { "scale": 0.18, "bond_radius": "0.1A" }, "camera": { "zoom": 1.9, "target": [-0.1, 0.05, 0] } }"##,
+        style: r##"{ "geometry": { "scale": 0.18, "bond_radius": "0.1A" }, "camera": { "zoom": 1.6, "target": [0.05, -0.1, 0] } }"##,
     },
     Setting {
         group: "geometry",
@@ -202,6 +202,13 @@ const SETTINGS: &[Setting] = &[
         scene: Molecule::Shipped("methane"),
         said: "Methane.",
         style: r##"{ "camera": { "zoom": 1.4 } }"##,
+    },
+    Setting {
+        group: "basic",
+        param: "smoothness",
+        scene: Molecule::Shipped("methane"),
+        said: "Methane, all in one colour, with a `metallic` of `0.5`.",
+        style: r##"{ "camera": { "zoom": 1.4 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#a33b2e", "metallic": 0.5 } }] }"##,
     },
     Setting {
         group: "basic",

@@ -134,7 +134,8 @@ pub(super) fn param(param: &Param) -> Value {
         Kind::Vector => {
             put("type", types(&["array"]));
             put("items", numbers());
-            (put("minItems", 3.into()), put("maxItems", 3.into()));
+            put("minItems", 3.into());
+            put("maxItems", 3.into());
         }
     }
     schema.into()
