@@ -103,7 +103,7 @@ const SETTINGS: &[Setting] = &[
         param: "",
         scene: Molecule::Shipped("caffeine"),
         said: "Caffeine.",
-        style: r#"{ "geometry": { "scale": 0.25, "bond_radius": "0.14A" } }"#,
+        style: r#"{ "camera": { "zoom": 1.25 }, "geometry": { "scale": 0.25, "bond_radius": "0.14A" } }"#,
     },
     Setting {
         group: "lights",

@@ -127,7 +127,7 @@ pub(super) fn param(param: &Param) -> Value {
             if len > 0 {
                 (list["minItems"], list["maxItems"]) = (len.into(), len.into());
             }
-            // [Prost2016, Table 1] nests its one list of `layers` in another.
+            // As published styles have it, which the reader takes too.
             let nested = json!({ "type": "array", "items": list, "minItems": 1, "maxItems": 1 });
             put("anyOf", json!([list, nested]));
         }
