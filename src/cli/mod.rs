@@ -4,8 +4,10 @@ mod check;
 mod copy;
 mod gallery;
 mod inputs;
+mod manual;
 mod messages;
 mod render;
+mod schema;
 mod watch;
 
 use std::fmt::Display;
@@ -36,6 +38,8 @@ enum Command {
     Check(check::Args),
     /// Copy a shipped look to a file, to start from
     Copy(copy::Args),
+    /// Print the JSON Schema of style files, for editors
+    Schema(schema::Args),
 }
 
 /// Why a command ended, and with which exit code.
@@ -93,6 +97,7 @@ pub fn run() -> ExitCode {
         Command::Gallery(args) => gallery::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Copy(args) => copy::run(&args),
+        Command::Schema(args) => schema::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -18,20 +18,46 @@ pub enum Orient {
 
 /// The keys of `camera`.
 pub const PARAMS: &[Param] = &[
-    Param::boolean("orthographic", false).or_text().doc("Parallel projection instead of perspective."),
-    Param::color("bgcolor", [255, 255, 255]).doc("Colour of the background."),
+    Param::boolean("orthographic", false)
+        .or_text()
+        .doc("Parallel projection instead of perspective.")
+        .examples(&["false", "true"]),
+    Param::color("bgcolor", [255, 255, 255]).doc("Colour of the background.").examples(&[
+        r##""#ffffff""##,
+        "[231, 220, 196]",
+        r##""#101522""##,
+    ]),
     // Below a degree, 32-bit depth fails; near 180 the picture is all edge.
-    Param::number("fov", 35.0).range(1.0, 150.0).unit("degrees").doc("Vertical field of view of a perspective camera."),
+    Param::number("fov", 35.0)
+        .range(1.0, 150.0)
+        .unit("degrees")
+        .doc("Vertical field of view of a perspective camera.")
+        .examples(&["15", "35", "100"]),
     Param::number("exposure", 0.0)
         .range(-10.0, 10.0)
         .unit("stops")
-        .doc("Brightness of what basic draws; +1 doubles it."),
-    Param::number("zoom", 1.0).range(0.01, 1000.0).doc("Magnification; 1 frames the whole scene."),
+        .doc("Brightness of what basic draws; +1 doubles it.")
+        .examples(&["-1", "0", "1"]),
+    Param::number("zoom", 1.0)
+        .range(0.01, 1000.0)
+        .doc("Magnification; 1 frames the whole scene.")
+        .examples(&["0.6", "1", "2.5"]),
     Param::choice("orient", &["default", "principal"], "default")
-        .doc("principal turns flat things to face the camera."),
-    Param::optional_vector("position").unit("radii").doc("Where the camera is, in radii from the sphere's centre."),
-    Param::optional_vector("target").unit("radii").doc("Where it looks, in radii from the sphere's centre."),
-    Param::optional_vector("up").doc("Which direction is up in the picture."),
+        .doc("principal turns flat things to face the camera.")
+        .examples(&[r#""default""#, r#""principal""#]),
+    Param::optional_vector("position")
+        .unit("radii")
+        .doc("Where the camera is, in radii from the sphere's centre.")
+        .examples(&["[0, 0, 4]", "[3, 2, 3]", "[0, 4, 0.5]"]),
+    Param::optional_vector("target")
+        .unit("radii")
+        .doc("Where it looks, in radii from the sphere's centre.")
+        .examples(&["[0, 0, 0]", "[0.6, 0, 0]", "[0, 0.6, 0]"]),
+    Param::optional_vector("up").doc("Which direction is up in the picture.").examples(&[
+        "[0, 1, 0]",
+        "[1, 1, 0]",
+        "[1, 0, 0]",
+    ]),
 ];
 
 /// The camera of a style.

@@ -1,7 +1,7 @@
 //! What a style can name: the shaders and post effects of the program, handed over by the engine.
 
 use super::param::{Param, check_table};
-use super::selector::ObjectKind;
+use super::selector::{Attribute, ObjectKind};
 
 /// The shader of everything that nothing selects, and of what is not drawn yet.
 pub const BASIC: &str = "basic";
@@ -22,6 +22,8 @@ pub struct CatalogEntry {
     pub name: &'static str,
     /// What it is for.
     pub role: Role,
+    /// One sentence for the manual, the schema and the editor.
+    pub doc: &'static str,
     /// Its parameters.
     pub params: &'static [Param],
     /// Whether this version draws it. One that is not drawn is part of the contract all the same: it loads with any
@@ -52,6 +54,12 @@ impl<'a> Catalog<'a> {
             .map(|entry| entry.name)
     }
 
+    /// What selectors can ask of the types that are drawn.
+    pub fn attributes(&self) -> impl Iterator<Item = Attribute> + use<'a> {
+        let kinds = self.kinds;
+        Attribute::ALL.into_iter().filter(move |of| kinds.iter().any(|kind| kind.attributes().contains(of)))
+    }
+
     /// The shader that stands in.
     pub(super) fn basic(&self) -> &'a CatalogEntry {
         self.get(BASIC).expect("every catalog has basic, which Catalog::check finds in a test")
@@ -67,6 +75,9 @@ impl<'a> Catalog<'a> {
             if self.shaders[..i].iter().any(|earlier| earlier.name == entry.name) {
                 wrong.push(format!("{:?} is registered twice", entry.name));
             }
+            if !entry.doc.ends_with('.') {
+                wrong.push(format!("{:?}: its doc is not a sentence", entry.name));
+            }
             wrong.extend(check_table(entry.params).into_iter().map(|reason| format!("{}: {reason}", entry.name)));
         }
         wrong
@@ -79,7 +90,8 @@ mod tests {
 
     #[test]
     fn a_catalog_without_basic_is_found() {
-        let entry = CatalogEntry { name: "fog", role: Role::PostEffect, params: &[], drawn: true };
+        let entry =
+            CatalogEntry { name: "fog", role: Role::PostEffect, doc: "Hides what is far.", params: &[], drawn: true };
         let catalog = Catalog { shaders: &[entry, entry], kinds: &[] };
         assert_eq!(catalog.check(), ["\"basic\" is not a drawn shader of objects", "\"fog\" is registered twice"]);
     }

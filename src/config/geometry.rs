@@ -7,11 +7,21 @@ use super::values::Values;
 /// The keys of `geometry`.
 pub const PARAMS: &[Param] = &[
     Param::choice_or_length("atom", &["vdw", "covalent"], "vdw")
-        .doc("Radius of atoms: of the element, or one for all."),
-    Param::number("scale", 0.25).range(0.001, 100.0).doc("Atoms are drawn this many times their radius."),
-    Param::length("bond_radius", "0.14A").doc("Radius of connectors."),
-    Param::boolean("bond_orders", false).doc("Draws double and triple bonds as such."),
-    Param::choice("file_unit", FILE_UNITS, "mm").doc("What a unit of length in mesh files is."),
+        .doc("Radius of atoms: of the element, or one for all.")
+        .examples(&[r#""vdw""#, r#""covalent""#, r#""1.5A""#]),
+    Param::number("scale", 0.25)
+        .range(0.001, 100.0)
+        .doc("Atoms are drawn this many times their radius.")
+        .examples(&["0.12", "0.25", "0.5", "1"]),
+    Param::length("bond_radius", "0.14A").doc("Radius of connectors.").examples(&[
+        r#""0.05A""#,
+        r#""0.14A""#,
+        r#""0.3A""#,
+    ]),
+    Param::boolean("bond_orders", false).doc("Draws double and triple bonds as such.").examples(&["false", "true"]),
+    Param::choice("file_unit", FILE_UNITS, "mm")
+        .doc("What a unit of length in mesh files is.")
+        .examples(&[r#""mm""#, r#""inch""#]),
 ];
 
 /// The words of `file_unit`.

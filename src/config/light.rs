@@ -10,21 +10,40 @@ use super::values::Values;
 
 /// The keys of one light.
 pub const PARAMS: &[Param] = &[
-    Param::choice("type", &["directional", "point", "ambient"], "directional").doc("What kind of light it is."),
+    Param::choice("type", &["directional", "point", "ambient"], "directional")
+        .doc("What kind of light it is.")
+        .examples(&[r#""directional""#, r#""point""#, r#""ambient""#]),
     Param::vector("position", [1.0, 2.0, 3.0])
         .unit("radii")
-        .doc("Where a point light is, or a directional one shines from, in radii from the sphere's centre."),
-    Param::color("color", [255, 255, 255]).doc("Colour of the light."),
-    Param::number("intensity", 1.0).range(0.0, 1000.0).doc("Factor on the colour."),
-    Param::choice("shadow", &["none", "hard", "soft"], "none").doc("What shadow it casts."),
-    Param::number("strength", 0.6).range(0.0, 1.0).doc("Darkness of the shadow; 1 is black."),
+        .doc("Where a point light is, or a directional one shines from, in radii from the sphere's centre.")
+        .examples(&["[-3, 1, 1]", "[1, 2, 3]", "[0, -3, 1]"]),
+    Param::color("color", [255, 255, 255]).doc("Colour of the light.").examples(&[
+        r##""#ffffff""##,
+        r##""#ffb35c""##,
+        "[110, 150, 255]",
+    ]),
+    Param::number("intensity", 1.0).range(0.0, 1000.0).doc("Factor on the colour.").examples(&["0.3", "1", "3"]),
+    Param::choice("shadow", &["none", "hard", "soft"], "none").doc("What shadow it casts.").examples(&[
+        r#""none""#,
+        r#""hard""#,
+        r#""soft""#,
+    ]),
+    Param::number("strength", 0.6)
+        .range(0.0, 1.0)
+        .doc("Darkness of the shadow; 1 is black.")
+        .examples(&["0.2", "0.6", "1"]),
     Param::number("softness", 3.0)
         .range(0.0, 90.0)
         .unit("degrees")
-        .doc("Angular diameter of the light, for soft shadows."),
-    Param::boolean("movable", false).doc("Whether it can be dragged in a window."),
-    Param::choice("space", &["camera", "scene"], "camera").doc("Whether it turns with the camera or with the scene."),
-    Param::optional_length("range").doc("Where a point light has faded to nothing; unset: it does not fade."),
+        .doc("Angular diameter of the light, for soft shadows.")
+        .examples(&["1", "8", "30"]),
+    Param::boolean("movable", false).doc("Whether it can be dragged in a window.").examples(&["false", "true"]),
+    Param::choice("space", &["camera", "scene"], "camera")
+        .doc("Whether it turns with the camera or with the scene.")
+        .examples(&[r#""camera""#, r#""scene""#]),
+    Param::optional_length("range")
+        .doc("Where a point light has faded to nothing; unset: it does not fade.")
+        .examples(&["null", "2", "1.4"]),
 ];
 
 /// What kind of light it is.

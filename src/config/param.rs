@@ -112,13 +112,15 @@ pub struct Param {
     pub unit: &'static str,
     /// One sentence for the manual, the schema and the editor.
     pub doc: &'static str,
+    /// Values that show what it does, as JSON: the editor offers them, and the manual has a picture of each.
+    pub examples: &'static [&'static str],
     /// Whether this version draws it; one that is not drawn loads with one warning.
     pub drawn: bool,
 }
 
 impl Param {
     const fn new(name: &'static str, kind: Kind, default: Default) -> Self {
-        Self { name, kind, default, range: None, unit: "", doc: "", drawn: true }
+        Self { name, kind, default, range: None, unit: "", doc: "", examples: &[], drawn: true }
     }
 
     /// A number.
@@ -214,6 +216,12 @@ impl Param {
         self
     }
 
+    /// Values that show what it does, as JSON texts; [`check_table`] tries each.
+    pub const fn examples(mut self, examples: &'static [&'static str]) -> Self {
+        self.examples = examples;
+        self
+    }
+
     /// How many numbers the list must hold.
     pub const fn of_len(mut self, len: usize) -> Self {
         self.kind = Kind::Numbers { len };
@@ -295,6 +303,51 @@ impl Param {
     }
 }
 
+impl Param {
+    /// What it holds and its default, for the manual and the editor, in Markdown.
+    pub fn facts(&self) -> String {
+        let words = |of: &[&str]| of.iter().map(|word| format!("`\"{word}\"`")).collect::<Vec<_>>().join(", ");
+        let numbers = |what: &str| {
+            let (lowest, highest) = self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+            let bounds = match (lowest.is_finite(), highest.is_finite()) {
+                (true, true) => format!(" from {lowest} to {highest}"),
+                (true, false) => format!(", {lowest} or more"),
+                (false, true) => format!(", {highest} or less"),
+                (false, false) => String::new(),
+            };
+            let unit = if self.unit.is_empty() { String::new() } else { format!(" ({})", self.unit) };
+            format!("{what}{bounds}{unit}")
+        };
+        let holds = match self.kind {
+            Kind::Number => numbers("a number"),
+            Kind::Count => numbers("a whole number"),
+            Kind::Length => numbers("a length"),
+            Kind::ChoiceOrLength(of) => format!("{}, or {}", words(of), numbers("a length")),
+            Kind::Color => "a colour".to_owned(),
+            Kind::BaseColor => format!("{}, or a colour", words(&BaseColor::NAMES)),
+            Kind::Choice(of) => format!("one of {}", words(of)),
+            Kind::Boolean | Kind::BooleanOrText => "`true` or `false`".to_owned(),
+            Kind::Numbers { len: 0 } => numbers("a list of numbers"),
+            Kind::Numbers { len } => numbers(&format!("a list of {len} numbers")),
+            Kind::Vector => numbers("three numbers"),
+        };
+        let default = match self.default {
+            Default::Unset => "unset (`null`)".to_owned(),
+            Default::Number(n) | Default::Radii(n) => format!("`{n}`"),
+            Default::Count(n) => format!("`{n}`"),
+            Default::Text(text) => format!("`\"{text}\"`"),
+            Default::Color(color) => format!("`\"{color}\"`"),
+            Default::BaseColor(color) => format!("`\"{color}\"`"),
+            Default::Boolean(value) => format!("`{value}`"),
+            Default::Numbers(list) => format!("`{list:?}`"),
+            Default::Vector([x, y, z]) => format!("`[{x}, {y}, {z}]`"),
+        };
+        let mut holds = holds.chars();
+        let first: String = holds.next().into_iter().flat_map(char::to_uppercase).collect();
+        format!("{first}{}. Default: {default}.", holds.as_str())
+    }
+}
+
 /// What is wrong with a table; empty if nothing is. For the test that every table of the program goes through.
 pub fn check_table(params: &[Param]) -> Vec<String> {
     let mut wrong = Vec::new();
@@ -308,6 +361,11 @@ pub fn check_table(params: &[Param]) -> Vec<String> {
         }
         if param.doc.is_empty() {
             wrong.push(format!("{name:?} has no doc"));
+        }
+        for example in param.examples {
+            if let Err(reason) = super::read::check_example(param, example) {
+                wrong.push(format!("{name:?}: the example {example} is wrong: {reason}"));
+            }
         }
         if param.range.is_some_and(|(lowest, highest)| lowest.is_nan() || highest.is_nan() || lowest > highest) {
             wrong.push(format!("{name:?}: the range is empty"));
@@ -350,6 +408,7 @@ mod tests {
             Param::numbers("layers", &[0.0]).of_len(4).doc("d"),
             Param::count("n", 1),
             Param::boolean("Flag", true).doc("d"),
+            Param::number("x", 1.0).range(0.0, 1.0).doc("d").examples(&["0.5", "7", "07"]),
         ];
         let wrong = check_table(&params).join("\n");
         for part in [
@@ -360,6 +419,8 @@ mod tests {
             "declared twice",
             "no doc",
             "\"Flag\" is not",
+            "\"x\": the example 7 is wrong: \"x\" is 7, but must lie in 0 to 1",
+            "\"x\": the example 07 is wrong: numbers are written like",
         ] {
             assert!(wrong.contains(part), "{part} is not in\n{wrong}");
         }

@@ -7,7 +7,8 @@ use super::error::{MOST_LISTED, Mistakes, Notice, Place, Problem, Warning};
 use super::hint::{Hint, quote};
 use super::length::Length;
 use super::param::{Kind, LARGEST, Param, Value};
-use super::source::Texts;
+use super::parse::parse;
+use super::source::{Source, Texts};
 use super::syntax::{Member, Node, Span, Tree};
 use super::values::Values;
 
@@ -166,6 +167,16 @@ fn read(param: &Param, node: &Node, with_hints: bool) -> Result<Value, Wrong> {
         Kind::Numbers { len } => numbers(param, len, node).map(Value::Numbers),
         Kind::Vector => vector(param, node).map(Value::Vector),
     }
+}
+
+/// Whether a parameter accepts an example of its table, or why not.
+pub(super) fn check_example(param: &Param, json: &str) -> Result<(), String> {
+    let mut mistakes = Mistakes::default();
+    let text = parse(&Source::new("example", json), 0, &mut mistakes);
+    if !mistakes.is_empty() {
+        return Err(mistakes.to_string());
+    }
+    read(param, &text.root, false).map(drop).map_err(|(_, problem)| problem.to_string())
 }
 
 fn out_of_range(param: &Param, value: f64, allowed: String) -> Problem {

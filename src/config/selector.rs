@@ -39,6 +39,17 @@ impl ObjectKind {
         }
     }
 
+    /// One sentence for the manual, the schema and the editor.
+    pub fn doc(self) -> &'static str {
+        match self {
+            Self::Atom => "Atoms, drawn as spheres.",
+            Self::Connector => "Bonds between two atoms, drawn as rods; each half follows its own atom.",
+            Self::Ribbon => "The backbones of chains.",
+            Self::Surface => "The surfaces of molecules.",
+            Self::Mesh => "The triangles of mesh files.",
+        }
+    }
+
     /// What selectors can ask of this type.
     pub fn attributes(self) -> &'static [Attribute] {
         use Attribute::{Chain, Element, File, Material, Model, Name, Part, Residue};
@@ -92,6 +103,20 @@ impl Attribute {
     /// Whether letters of either case match.
     pub fn ignores_case(self) -> bool {
         self == Self::Element
+    }
+
+    /// One sentence for the manual, the schema and the editor.
+    pub fn doc(self) -> &'static str {
+        match self {
+            Self::Element => "Symbol of the element, such as `C` or `Mg`; upper or lower case.",
+            Self::Name => "Name of the atom in its file, such as `CA`.",
+            Self::Residue => "Name of the residue, such as `HOH` for water.",
+            Self::Chain => "Name of the chain, such as `A`.",
+            Self::Model => "Number of the model, such as `1`.",
+            Self::Part => "Name of a part of a mesh.",
+            Self::Material => "Name of a material of a mesh.",
+            Self::File => "Name of the mesh's file.",
+        }
     }
 }
 

@@ -15,7 +15,7 @@ use super::values::Values;
 const KEYS: [&str; 3] = ["name", "shader", "properties"];
 
 /// What every shader of objects has, so that a stand-in can keep it.
-const SHARED: [&str; 2] = ["base_color", "opacity"];
+pub(super) const SHARED: [&str; 2] = ["base_color", "opacity"];
 
 /// Most names of a file that a message lists.
 const MOST_NAMES: usize = 20;

@@ -154,6 +154,12 @@ impl Style {
 pub(super) fn resolve(texts: &Texts, merged: Merged, catalog: &Catalog<'_>) -> Result<Style, Mistakes> {
     let mut reader = Reader::new(texts, merged.mistakes);
     let root = &merged.root;
+    if let Some(node) = root.get("$id").filter(|node| node.text() == Some(super::schema::ID)) {
+        let reason = "this is the schema that editors check styles with, not a style: name a style, such as one that \
+                      restyle copy makes";
+        reader.wrong(node.span, Problem::Meaningless(reason));
+        return Err(reader.mistakes);
+    }
     for member in reader.object("style", root) {
         if !KEYS.contains(&member.key.as_str()) {
             reader.unknown_key("a style", member, KEYS);

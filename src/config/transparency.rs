@@ -6,9 +6,18 @@ use super::values::Values;
 /// The keys of `transparency`.
 pub const PARAMS: &[Param] = &[
     Param::choice("method", &["auto", "bkb", "exact"], "auto")
+        .not_drawn_yet()
         .doc("auto takes the cheapest that is right for the scene."),
-    Param::count("k", 8).range(1.0, 64.0).unit("fragments").doc("Most fragments that are kept for each pixel."),
-    Param::count("memory_mb", 512).range(16.0, 65536.0).unit("MB").doc("Most memory that the fragments may take."),
+    Param::count("k", 8)
+        .range(1.0, 64.0)
+        .unit("fragments")
+        .not_drawn_yet()
+        .doc("Most fragments that are kept for each pixel."),
+    Param::count("memory_mb", 512)
+        .range(16.0, 65536.0)
+        .unit("MB")
+        .not_drawn_yet()
+        .doc("Most memory that the fragments may take."),
 ];
 
 /// How fragments are put in order.

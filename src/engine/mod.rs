@@ -27,11 +27,11 @@ pub use crate::gpu::{Counters, Gpu, GpuError};
 pub use live::{Part, Refusal, Reload, ReloadTimes, Sources, source_tree_shaders};
 
 /// Effects and shaders of the contract that this version names but does not draw.
-const NOT_DRAWN: [(&str, Role); 4] = [
-    ("curvature", Role::Object),
-    ("ssaoPost", Role::PostEffect),
-    ("dofPost", Role::PostEffect),
-    ("outlinePost", Role::PostEffect),
+const NOT_DRAWN: [(&str, Role, &str); 4] = [
+    ("curvature", Role::Object, "Glass that is clearer where the surface is flat."),
+    ("ssaoPost", Role::PostEffect, "Darkens creases and contacts."),
+    ("dofPost", Role::PostEffect, "Blurs what is out of focus."),
+    ("outlinePost", Role::PostEffect, "Lines where depth or direction jump."),
 ];
 
 /// Types of objects that this version draws.
@@ -42,10 +42,11 @@ pub fn catalog() -> Vec<CatalogEntry> {
     let drawn = SHADERS.iter().map(|shader| CatalogEntry {
         name: shader.name(),
         role: Role::Object,
+        doc: shader.doc(),
         params: shader.params(),
         drawn: true,
     });
-    let named = NOT_DRAWN.iter().map(|&(name, role)| CatalogEntry { name, role, params: &[], drawn: false });
+    let named = NOT_DRAWN.iter().map(|&(name, role, doc)| CatalogEntry { name, role, doc, params: &[], drawn: false });
     drawn.chain(named).collect()
 }
 

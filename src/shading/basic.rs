@@ -13,8 +13,11 @@ use crate::{gpu_struct, wgsl};
 pub const PARAMS: &[Param] = &[
     BASE_COLOR,
     Param::number("opacity", 1.0).range(0.0, 1.0).not_drawn_yet().doc("1 is opaque, 0 invisible."),
-    Param::number("smoothness", 0.5).range(0.0, 1.0).doc("0 is matt, 1 a mirror."),
-    Param::number("metallic", 0.0).range(0.0, 1.0).doc("0 is plastic, 1 is metal in the base colour."),
+    Param::number("smoothness", 0.5).range(0.0, 1.0).doc("0 is matt, 1 a mirror.").examples(&["0", "0.5", "0.8", "1"]),
+    Param::number("metallic", 0.0)
+        .range(0.0, 1.0)
+        .doc("0 is plastic, 1 is metal in the base colour.")
+        .examples(&["0", "0.5", "1"]),
 ];
 
 gpu_struct! {

@@ -99,7 +99,8 @@ pub fn shader_index(name: &str) -> Option<usize> {
 
 /// `base_color`, which every object shader has.
 pub const BASE_COLOR: Param = Param::base_color("base_color", BaseColor::Element)
-    .doc("Colour of the object: element (CPK), chain, residue, part, material, or one colour.");
+    .doc("Colour of the object: element (CPK), chain, residue, part, material, or one colour.")
+    .examples(&[r#""element""#, r##""#c0392b""##, r#""steelblue""#]);
 
 /// Linear RGB of a colour.
 pub fn linear(color: Srgba) -> Vec3 {

@@ -15,23 +15,48 @@ const LEVELS: &[&str] = &["floor", "centre", "full"];
 pub const PARAMS: &[Param] = &[
     BASE_COLOR,
     Param::number("opacity", 1.0).range(0.0, 1.0).not_drawn_yet().doc("1 is opaque, 0 invisible."),
-    Param::color("color", [0, 0, 0]).doc("Colour of both outlines."),
-    Param::length("hull_size", "0pt").doc("Width of the outline around the object; 0 draws none."),
+    Param::color("color", [0, 0, 0]).doc("Colour of both outlines.").examples(&[
+        r##""#000000""##,
+        r##""#8a1c1c""##,
+        r#""white""#,
+    ]),
+    Param::length("hull_size", "0pt").doc("Width of the outline around the object; 0 draws none.").examples(&[
+        r#""0pt""#,
+        r#""12pt""#,
+        r#""36pt""#,
+    ]),
     Param::number("outline_bias", 0.0)
         .range(0.0, 1.0)
-        .doc("Cosine between surface and view below which the surface itself turns into outline; 0 draws none."),
-    Param::number("scale", 0.5).range(0.0, 10.0).doc("Weight of the cosine between surface and light (alpha)."),
-    Param::number("bias", 0.5).range(0.0, 10.0).doc("Light that is there without the cosine (beta)."),
-    Param::number("exponent", 1.0).range(0.01, 100.0).doc("Moves the borders between the bands (gamma)."),
-    Param::count("steps", 4).range(1.0, 256.0).doc("How many bands; 1 is flat."),
+        .doc("Cosine between surface and view below which the surface itself turns into outline; 0 draws none.")
+        .examples(&["0", "0.35", "0.6"]),
+    Param::number("scale", 0.5)
+        .range(0.0, 10.0)
+        .doc("Weight of the cosine between surface and light (alpha).")
+        .examples(&["0.1", "0.5", "1"]),
+    Param::number("bias", 0.5)
+        .range(0.0, 10.0)
+        .doc("Light that is there without the cosine (beta).")
+        .examples(&["0.1", "0.5", "0.9"]),
+    Param::number("exponent", 1.0)
+        .range(0.01, 100.0)
+        .doc("Moves the borders between the bands (gamma).")
+        .examples(&["0.4", "1", "3"]),
+    Param::count("steps", 4).range(1.0, 256.0).doc("How many bands; 1 is flat.").examples(&["1", "2", "4", "8"]),
     Param::choice("levels", LEVELS, "floor")
-        .doc("Brightness of a band: of its darker border as published, its centre, or spread from black to full."),
+        .doc("Brightness of a band: of its darker border as published, its centre, or spread from black to full.")
+        .examples(&[r#""floor""#, r#""centre""#, r#""full""#]),
     Param::optional_color("shadow_color")
-        .doc("Multiplies the colour where no light is; unset, what is unlit turns black."),
-    Param::optional_color("specular_color").doc("Colour of a flat highlight; unset, there is none."),
+        .doc("Multiplies the colour where no light is; unset, what is unlit turns black.")
+        .examples(&["null", r##""#3b3a66""##, "[150, 70, 40]"]),
+    Param::optional_color("specular_color").doc("Colour of a flat highlight; unset, there is none.").examples(&[
+        "null",
+        r#""white""#,
+        r##""#ffd27f""##,
+    ]),
     Param::number("specular_limit", 0.95)
         .range(-1.0, 1.0)
-        .doc("Cosine between mirrored light and view above which the highlight is drawn."),
+        .doc("Cosine between mirrored light and view above which the highlight is drawn.")
+        .examples(&["0.7", "0.9", "0.98"]),
 ];
 
 gpu_struct! {

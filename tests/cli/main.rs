@@ -10,5 +10,6 @@ mod check;
 mod extremes;
 mod pictures;
 mod rig;
+mod schema;
 mod shipped;
 mod watch;

@@ -16,7 +16,35 @@ fn copy_gives_the_look_and_never_overwrites() {
     folder.run("copy educaton new.json").refused(1, "did you mean \"education\"?");
     folder.run("copy education no/new.json").refused(1, "no/new.json: its folder does not exist; make it first");
     folder.run("copy education").refused(2, "<FILE>");
-    assert_eq!(folder.names(), ["mine.json"]);
+    assert_eq!(folder.names(), ["mine.json", "style-v1.json"]);
+}
+
+#[test]
+fn copy_brings_the_schema_and_spares_what_is_not_ours() {
+    let folder = Folder::new("schema");
+    let schema = folder.run("schema").done().out.into_bytes();
+    assert_eq!(folder.run("copy education a.json").done().err, "");
+    assert_eq!(folder.read("style-v1.json"), schema);
+    folder.write("style-v1.json", "{ \"$id\": \"urn:restyle:style:1\", \"title\": \"older\" }");
+    assert_eq!(folder.run("copy education b.json").done().err, "");
+    assert_eq!(folder.read("style-v1.json"), schema);
+    folder.write("style-v1.json", "{ \"mine\": true }");
+    let outcome = folder.run("copy education c.json").done();
+    assert!(outcome.err.starts_with("warning: style-v1.json: is another file and is left"), "{}", outcome.err);
+    assert_eq!(folder.read("style-v1.json"), b"{ \"mine\": true }");
+    // The style itself may have taken the name.
+    let own = Folder::new("schema-name");
+    let outcome = own.run("copy education style-v1.json").done();
+    assert!(outcome.err.contains("is another file"), "{}", outcome.err);
+    assert_eq!(own.names(), ["style-v1.json"]);
+}
+
+#[test]
+fn the_schema_in_place_of_a_style_is_told() {
+    let folder = Folder::new("schema-style");
+    folder.run("copy education mine.json").done();
+    let outcome = folder.run("render water -s style-v1.json -o out.png");
+    outcome.refused(1, "this is the schema that editors check styles with, not a style");
 }
 
 #[test]
@@ -36,6 +64,6 @@ fn without_an_adapter_the_message_names_the_package() {
 fn help_and_version_need_nothing() {
     let folder = Folder::new("help");
     let help = folder.run("--help").done().out;
-    assert!(["render", "gallery", "copy"].iter().all(|command| help.contains(command)), "{help}");
+    assert!(["render", "gallery", "copy", "schema"].iter().all(|command| help.contains(command)), "{help}");
     assert_eq!(folder.run("--version").done().out, format!("restyle {}\n", env!("CARGO_PKG_VERSION")));
 }

@@ -4,3 +4,5 @@ mod scene_data;
 mod scene_mutations;
 mod scene_shipped;
 mod style_files;
+mod style_manual;
+mod style_schema;

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use restyle::config::param::check_table;
-use restyle::config::{Catalog, camera, geometry, light, transparency};
+use restyle::config::{Catalog, SECTIONS};
 use restyle::engine;
 use restyle::shading::{DEFAULT_SHADER, SHADERS, shader_index};
 
@@ -69,16 +69,22 @@ fn every_feature_is_named_once_and_read_by_its_shader() {
 
 #[test]
 fn every_table_of_parameters_is_sound() {
-    let mut tables = vec![
-        ("camera", camera::PARAMS),
-        ("geometry", geometry::PARAMS),
-        ("light", light::PARAMS),
-        ("transparency", transparency::PARAMS),
-    ];
+    let mut tables: Vec<_> = SECTIONS.iter().map(|section| (section.key, section.params)).collect();
     tables.extend(SHADERS.iter().map(|shader| (shader.name(), shader.params())));
     let complaints = tables
         .iter()
         .flat_map(|(name, params)| check_table(params).into_iter().map(move |wrong| format!("{name}: {wrong}")));
+    assert_none(&complaints.collect::<Vec<_>>());
+}
+
+#[test]
+fn every_drawn_parameter_has_a_few_examples() {
+    let tables = SECTIONS.iter().map(|section| (section.key, section.params));
+    let tables = tables.chain(SHADERS.iter().map(|shader| (shader.name(), shader.params())));
+    let complaints = tables.flat_map(|(group, params)| {
+        let bare = params.iter().filter(|param| param.drawn && !(2..=4).contains(&param.examples.len()));
+        bare.map(move |param| format!("{group}: {:?} has {} examples, not 2 to 4", param.name, param.examples.len()))
+    });
     assert_none(&complaints.collect::<Vec<_>>());
 }
 

@@ -34,11 +34,11 @@ const UNLIT: &[Param] = &[BASE_COLOR, OPACITY];
 const DOF: &[Param] = &[Param::numbers("layers", &[0.0, 0.0, 0.7, 0.9]).of_len(4).range(0.0, 1.0).doc("Layers.")];
 
 const fn object(name: &'static str, params: &'static [Param]) -> CatalogEntry {
-    CatalogEntry { name, role: Role::Object, params, drawn: true }
+    CatalogEntry { name, role: Role::Object, doc: "Draws.", params, drawn: true }
 }
 
 const fn effect(name: &'static str, params: &'static [Param], drawn: bool) -> CatalogEntry {
-    CatalogEntry { name, role: Role::PostEffect, params, drawn }
+    CatalogEntry { name, role: Role::PostEffect, doc: "Changes.", params, drawn }
 }
 
 const CURVATURE: CatalogEntry = CatalogEntry { drawn: false, ..object("curvature", &[]) };

@@ -5,7 +5,7 @@ mod catalog;
 mod explaining;
 mod extending;
 mod loading;
-mod mutations;
+pub mod mutations;
 mod resolving;
 mod source_lines;
 mod syntax;

@@ -10,10 +10,10 @@ use super::catalog::{EARLY, LATER};
 const MUTATIONS: usize = 10_000;
 
 /// xorshift64* [Vigna2016]: small and the same everywhere.
-struct Random(u64);
+pub struct Random(pub u64);
 
 impl Random {
-    fn below(&mut self, end: usize) -> usize {
+    pub fn below(&mut self, end: usize) -> usize {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
         self.0 ^= self.0 >> 27;

@@ -1,0 +1,284 @@
+//! The manual's pictures: for each parameter, one small molecule drawn with each of its examples in turn.
+
+use serde_json::{Value, json};
+
+use crate::config::catalog::{BASIC, Catalog, Role};
+use crate::config::param::Param;
+use crate::config::sections::SECTIONS;
+
+/// A molecule of the manual.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Molecule {
+    /// A shipped one, by its name.
+    Shipped(&'static str),
+    /// The text of a PDB file.
+    Pdb(&'static str),
+}
+
+/// A single, a double and a triple bond; no shipped file says of what order its bonds are.
+const ACRYLONITRILE: Molecule = Molecule::Pdb(include_str!("acrylonitrile.pdb"));
+
+/// A strip of pictures that differ in one parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Strip {
+    /// The section or shader.
+    pub group: &'static str,
+    /// The parameter.
+    pub param: &'static str,
+    /// What is drawn.
+    pub scene: Molecule,
+    /// What is seen, for the manual.
+    pub said: &'static str,
+    /// A style for each picture, from left to right, as JSON.
+    pub styles: Vec<String>,
+}
+
+impl Strip {
+    /// The stem of its file.
+    pub fn name(&self) -> String {
+        format!("{}-{}", self.group, self.param)
+    }
+}
+
+/// Parameters that change nothing in a still.
+const UNSEEN: [(&str, &str); 2] = [("geometry", "file_unit"), ("lights", "movable")];
+
+/// What a parameter is shown on.
+struct Setting {
+    group: &'static str,
+    /// Empty for all others of the group.
+    param: &'static str,
+    scene: Molecule,
+    said: &'static str,
+    /// What the style has beside [`base`].
+    style: &'static str,
+}
+
+/// The first that fits is taken.
+const SETTINGS: &[Setting] = &[
+    Setting {
+        group: "camera",
+        param: "orthographic",
+        scene: Molecule::Shipped("nanotube"),
+        said: "A nanotube, from close by.",
+        style: r#"{ "camera": { "position": [0.15, 0.1, 2.2], "fov": 60, "zoom": 1.3 }, "geometry": { "scale": 0.3 } }"#,
+    },
+    Setting {
+        group: "camera",
+        param: "fov",
+        scene: Molecule::Shipped("sodium_chloride"),
+        said: "A crystal of salt, turned; the camera steps back as the angle narrows.",
+        style: r#"{ "lights": [{ "type": "directional", "position": [-1, 1.5, 1.5] }, { "type": "ambient", "intensity": 0.5 }] }"#,
+    },
+    Setting {
+        group: "camera",
+        param: "orient",
+        scene: Molecule::Shipped("alpha_helix"),
+        said: "A helix, which stands upright in its file.",
+        style: r#"{ "geometry": { "scale": 0.4 } }"#,
+    },
+    Setting {
+        group: "camera",
+        param: "exposure",
+        scene: Molecule::Shipped("methane"),
+        said: "Methane.",
+        style: r#"{ "camera": { "zoom": 1.4 } }"#,
+    },
+    Setting {
+        group: "camera",
+        param: "",
+        scene: Molecule::Shipped("caffeine"),
+        said: "Caffeine.",
+        style: r#"{ "camera": { "fov": 35 } }"#,
+    },
+    Setting {
+        group: "geometry",
+        param: "bond_orders",
+        scene: ACRYLONITRILE,
+        said: "Acrylonitrile, from a PDB file that says of what order its bonds are.",
+        style: r##"{ "geometry": { "scale": 0.18, "bond_radius": "0.1A" }, "camera": { "zoom": 1.6, "target": [0.05, -0.1, 0] } }"##,
+    },
+    Setting {
+        group: "geometry",
+        param: "",
+        scene: Molecule::Shipped("caffeine"),
+        said: "Caffeine.",
+        style: r#"{ "camera": { "zoom": 1.25 }, "geometry": { "scale": 0.25, "bond_radius": "0.14A" } }"#,
+    },
+    Setting {
+        group: "lights",
+        param: "range",
+        scene: Molecule::Shipped("caffeine"),
+        said: "Caffeine, with a point light on its right.",
+        style: r#"{ "lights": [{ "type": "point", "position": [1.4, 0.4, 0.8], "intensity": 1.5 }, { "type": "ambient", "intensity": 0.2 }] }"#,
+    },
+    Setting {
+        group: "lights",
+        param: "space",
+        scene: Molecule::Shipped("methane"),
+        said: "Methane, seen from its right; the light is written as coming from the left.",
+        style: r#"{ "camera": { "position": [4, 0, 0], "zoom": 1.4 }, "lights": [{ "type": "directional", "position": [-3, 1, 1] }, { "type": "ambient", "intensity": 0.3 }] }"#,
+    },
+    Setting {
+        group: "lights",
+        param: "type",
+        scene: Molecule::Shipped("methane"),
+        said: "Methane; an ambient light has no direction.",
+        style: r##"{ "camera": { "zoom": 1.4 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#d8d3cb" } }], "lights": [{ "type": "directional", "position": [-1, 1, 1] }] }"##,
+    },
+    Setting {
+        group: "lights",
+        param: "shadow",
+        scene: Molecule::Shipped("methane"),
+        said: "Methane, with light from behind one of its atoms on the right.",
+        style: r##"{ "geometry": { "scale": 0.5 }, "camera": { "zoom": 1.8 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#e3c9a0" } }], "lights": [{ "type": "directional", "position": [2, 1.6, 0.9], "softness": 12, "strength": 0.8 }, { "type": "ambient", "intensity": 0.2 }] }"##,
+    },
+    Setting {
+        group: "lights",
+        param: "strength",
+        scene: Molecule::Shipped("methane"),
+        said: "Methane, with light from behind one of its atoms on the right.",
+        style: r##"{ "geometry": { "scale": 0.5 }, "camera": { "zoom": 1.8 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#e3c9a0" } }], "lights": [{ "type": "directional", "position": [2, 1.6, 0.9], "shadow": "hard" }, { "type": "ambient", "intensity": 0.2 }] }"##,
+    },
+    Setting {
+        group: "lights",
+        param: "softness",
+        scene: Molecule::Shipped("methane"),
+        said: "Methane, with light from behind one of its atoms on the right.",
+        style: r##"{ "geometry": { "scale": 0.5 }, "camera": { "zoom": 1.8 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#e3c9a0" } }], "lights": [{ "type": "directional", "position": [2, 1.6, 0.9], "shadow": "soft", "strength": 0.9 }, { "type": "ambient", "intensity": 0.2 }] }"##,
+    },
+    Setting {
+        group: "lights",
+        param: "",
+        scene: Molecule::Shipped("methane"),
+        said: "Methane.",
+        style: r##"{ "camera": { "zoom": 1.4 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#d8d3cb" } }], "lights": [{ "type": "directional", "position": [-1, 1.5, 1.5] }, { "type": "ambient", "intensity": 0.3 }] }"##,
+    },
+    Setting {
+        group: "toon",
+        param: "color",
+        scene: Molecule::Shipped("methane"),
+        said: "Methane, with a `hull_size` of `\"30pt\"`.",
+        style: r##"{ "camera": { "zoom": 1.3 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#f2a65a", "hull_size": "30pt" } }] }"##,
+    },
+    Setting {
+        group: "toon",
+        param: "specular_limit",
+        scene: Molecule::Shipped("methane"),
+        said: "Methane, with a white highlight.",
+        style: r##"{ "camera": { "zoom": 1.4 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#c8553d", "specular_color": "white" } }] }"##,
+    },
+    Setting {
+        group: "toon",
+        param: "specular_color",
+        scene: Molecule::Shipped("methane"),
+        said: "Methane, with a `specular_limit` of `0.9`.",
+        style: r##"{ "camera": { "zoom": 1.4 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#c8553d", "specular_limit": 0.9 } }] }"##,
+    },
+    Setting {
+        group: "toon",
+        param: "base_color",
+        scene: Molecule::Shipped("methane"),
+        said: "Methane.",
+        style: r##"{ "camera": { "zoom": 1.4 } }"##,
+    },
+    Setting {
+        group: "toon",
+        param: "shadow_color",
+        scene: Molecule::Shipped("methane"),
+        said: "Methane, all in one colour, with a `bias` of `0.2`.",
+        style: r##"{ "camera": { "zoom": 1.3 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#f2a65a", "bias": 0.2 } }] }"##,
+    },
+    Setting {
+        group: "toon",
+        param: "",
+        scene: Molecule::Shipped("methane"),
+        said: "Methane, all in one colour.",
+        style: r##"{ "camera": { "zoom": 1.3 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#f2a65a" } }] }"##,
+    },
+    Setting {
+        group: "basic",
+        param: "base_color",
+        scene: Molecule::Shipped("methane"),
+        said: "Methane.",
+        style: r##"{ "camera": { "zoom": 1.4 } }"##,
+    },
+    Setting {
+        group: "basic",
+        param: "smoothness",
+        scene: Molecule::Shipped("methane"),
+        said: "Methane, all in one colour, with a `metallic` of `0.5`.",
+        style: r##"{ "camera": { "zoom": 1.4 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#a33b2e", "metallic": 0.5 } }] }"##,
+    },
+    Setting {
+        group: "basic",
+        param: "",
+        scene: Molecule::Shipped("methane"),
+        said: "Methane, all in one colour.",
+        style: r##"{ "camera": { "zoom": 1.4 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#a33b2e" } }] }"##,
+    },
+    // Any shader, also one that this table does not know yet.
+    Setting {
+        group: "",
+        param: "",
+        scene: Molecule::Shipped("methane"),
+        said: "Methane.",
+        style: r##"{ "camera": { "zoom": 1.4 } }"##,
+    },
+];
+
+/// What all pictures have in common.
+fn base() -> Value {
+    json!({
+        "camera": { "bgcolor": "#e6e8ec" },
+        "geometry": { "scale": 0.5, "bond_radius": "0.2A" },
+        "mapping": { "*": "shown" },
+        "shaders": [{ "name": "shown", "properties": {} }],
+        "lights": [{ "type": "directional", "position": [-1, 1.5, 1.5] }, { "type": "ambient", "intensity": 0.5 }],
+    })
+}
+
+/// Every strip of the manual, in its order.
+pub fn strips(catalog: &Catalog<'_>) -> Vec<Strip> {
+    let sections = SECTIONS.iter().map(|section| (section.key, section.params));
+    let shaders = catalog.shaders.iter().filter(|entry| entry.drawn && entry.role == Role::Object);
+    let groups = sections.chain(shaders.map(|entry| (entry.name, entry.params)));
+    let all = groups.flat_map(|(group, params)| params.iter().map(move |param| (group, param)));
+    let seen = all
+        .filter(|(group, param)| param.drawn && !param.examples.is_empty() && !UNSEEN.contains(&(group, param.name)));
+    seen.map(|(group, param)| strip(group, param)).collect()
+}
+
+fn strip(group: &'static str, param: &'static Param) -> Strip {
+    let fits = |setting: &&Setting| [group, ""].contains(&setting.group) && [param.name, ""].contains(&setting.param);
+    let setting = SETTINGS.iter().find(fits).expect("the last fits all");
+    let styles = param.examples.iter().map(|example| style(setting, group, param, example).to_string()).collect();
+    Strip { group, param: param.name, scene: setting.scene, said: setting.said, styles }
+}
+
+fn style(setting: &Setting, group: &str, param: &Param, example: &str) -> Value {
+    let read = |text: &str| serde_json::from_str::<Value>(text).expect("a test draws every setting and example");
+    let mut style = base();
+    merge(&mut style, read(setting.style));
+    let of_section = SECTIONS.iter().find(|section| section.key == group);
+    style["shaders"][0]["shader"] = of_section.map_or(group, |_| BASIC).into();
+    let place = match of_section {
+        Some(section) if section.is_list => &mut style[group][0],
+        Some(_) => &mut style[group],
+        None => &mut style["shaders"][0]["properties"],
+    };
+    place[param.name] = read(example);
+    style
+}
+
+/// Lays values over others: objects key by key, all else as a whole.
+fn merge(onto: &mut Value, from: Value) {
+    match (onto, from) {
+        (Value::Object(onto), Value::Object(from)) => {
+            for (key, value) in from {
+                merge(onto.entry(key).or_insert(Value::Null), value);
+            }
+        }
+        (onto, from) => *onto = from,
+    }
+}

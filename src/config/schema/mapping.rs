@@ -1,0 +1,112 @@
+//! The schema of `mapping`: selectors as keys, names of shaders as values.
+
+use serde_json::{Map, Value, json};
+
+use super::{NOT_DRAWN, patterns};
+use crate::config::catalog::{Catalog, Role};
+use crate::config::selector::{Attribute, ObjectKind, Selector};
+
+/// Selectors that the editor offers, beside one for each type that is drawn.
+const OFFERED: [(&str, &str); 9] = [
+    ("*", "Everything."),
+    ("atom[element=C]", "Atoms of one element."),
+    ("atom[element=H]", "Atoms of one element."),
+    ("atom[element=N]", "Atoms of one element."),
+    ("atom[element=O]", "Atoms of one element."),
+    ("atom[residue=HOH]", "Atoms of one residue: water."),
+    ("atom[name=CA]", "Atoms of one name: the backbone's carbon."),
+    ("*[chain=A]", "Everything of one chain."),
+    ("connector[element=H]", "Bonds that end at an atom of this element."),
+];
+
+/// What the editor says of a key that is no selector.
+fn no_selector(catalog: &Catalog<'_>) -> String {
+    let kinds: Vec<&str> = catalog.kinds.iter().map(|kind| kind.name()).collect();
+    let attributes: Vec<&str> = catalog.attributes().map(Attribute::name).collect();
+    format!(
+        "This is no selector: write a type ({} or *), then any number of [attribute=value], such as atom[element=O]. \
+         Attributes: {}.",
+        kinds.join(", "),
+        attributes.join(", ")
+    )
+}
+
+/// What the editor says of a rule; of one that is offered, it says which objects it picks.
+const TARGET: &str = "The name of an entry of shaders, or of a shader with its defaults; null hides.";
+
+/// The schema of the object `mapping`.
+pub(super) fn mapping(catalog: &Catalog<'_>) -> Value {
+    let target = || json!([{ "$ref": "#/definitions/target" }]);
+    let rule = |doc: &str| json!({ "description": doc, "type": ["string", "null"], "allOf": target() });
+    let mut properties = Map::new();
+    for kind in catalog.kinds {
+        properties.insert(kind.name().to_owned(), rule(kind.doc()));
+    }
+    for (selector, doc) in OFFERED {
+        let kind = Selector::parse(selector).ok().and_then(|selector| selector.kind());
+        if kind.is_none_or(|kind| catalog.kinds.contains(&kind)) {
+            properties.insert(selector.to_owned(), rule(doc));
+        }
+    }
+    properties.insert("post_effects".to_owned(), post_effects(catalog));
+    let (drawn, not_drawn): (Vec<_>, Vec<_>) =
+        ObjectKind::ALL.into_iter().partition(|kind| catalog.kinds.contains(kind));
+    let some = |kinds: Vec<ObjectKind>| kinds.into_iter().map(Some).collect::<Vec<_>>();
+    let mut patterns = Map::new();
+    let any = [some(drawn), vec![None]].concat();
+    patterns.insert(patterns::selector(&any), rule(TARGET));
+    if !not_drawn.is_empty() {
+        let message = format!("objects of this type are {NOT_DRAWN}");
+        let rule = json!({ "description": TARGET, "deprecationMessage": message, "allOf": target() });
+        patterns.insert(patterns::selector(&some(not_drawn)), rule);
+    }
+    json!({
+        "type": "object",
+        "description": "Which shader draws what. More attributes win, then a type over *, then the later rule. What no \
+                        rule selects is drawn with basic; null hides.",
+        // Alone, so that its words are said of keys and not of a mapping that is no object.
+        "allOf": [{
+            "properties": properties,
+            "patternProperties": patterns,
+            "additionalProperties": false,
+            "errorMessage": no_selector(catalog),
+        }],
+    })
+}
+
+/// What draws: a name of `shaders`, of a base, or of a registered shader.
+pub(super) fn target(catalog: &Catalog<'_>) -> Value {
+    named(catalog, Role::Object, &["string", "null"])
+}
+
+fn post_effects(catalog: &Catalog<'_>) -> Value {
+    let mut schema = json!({
+        "type": "array",
+        "description": "Post effects, in the order in which they change the picture.",
+        "items": named(catalog, Role::PostEffect, &["string"]),
+    });
+    if catalog.drawn_names(Some(Role::PostEffect)).next().is_none() {
+        schema["doNotSuggest"] = true.into();
+    }
+    schema
+}
+
+/// A name of one role. Any text may be one: what the file calls its shaders, no schema can know.
+fn named(catalog: &Catalog<'_>, role: Role, types: &[&str]) -> Value {
+    let of_role = || catalog.shaders.iter().filter(|entry| entry.role == role);
+    let drawn = || of_role().filter(|entry| entry.drawn);
+    let names: Vec<&str> = drawn().map(|entry| entry.name).collect();
+    let docs: Vec<&str> = drawn().map(|entry| entry.doc).collect();
+    let not_drawn = of_role().filter(|entry| !entry.drawn).map(|entry| entry.name);
+    let known = json!({ "enum": names, "enumDescriptions": docs });
+    let mut alternatives = vec![json!({})];
+    if !names.is_empty() {
+        alternatives.insert(0, known);
+    }
+    json!({
+        "type": types,
+        "anyOf": alternatives,
+        "if": { "type": "string", "pattern": patterns::one_of(not_drawn) },
+        "then": { "deprecationMessage": NOT_DRAWN },
+    })
+}
