@@ -7,7 +7,7 @@
 //!
 //! Bounds, for n rules of any lengths and objects of v different values of an attribute:
 //! - To build: n log n, the logarithm for sorting.
-//! - Each different value: one look-up for plain patterns, and the steps of a [`GlobSet`] for globs.
+//! - Each different value: one look-up for plain patterns, and the steps of a tree of globs for globs.
 //! - Each question: a group for each set of attributes that rules ask for, 32 at the most for molecules. With plain
 //!   values alone a group is one path of at most 5 searches of log n; a value that also matches g globs makes g + 1
 //!   branches of it. Rules that cannot win any more are passed over. The worst is a style of globs of which many match

@@ -63,11 +63,11 @@ fn names(rule: &Rule, classes: &AtomClasses, bonded: &[bool]) -> Hint {
             best = Some(candidate);
             names.clear();
         }
-        if best == Some(candidate) {
+        if best == Some(candidate) && names.len() < MOST_COMPARED {
             names.extend(value(attribute).filter(|name| !name.is_empty()));
         }
     }
     let Some((_, _, pattern)) = best else { return Hint::NONE };
-    let compared = names.iter().copied().take(MOST_COMPARED);
-    if names.len() <= MOST_NAMES { Hint::new(pattern, compared) } else { Hint::nearest_of(pattern, compared) }
+    let too_many = names.len() > MOST_NAMES;
+    if too_many { Hint::nearest_of(pattern, names) } else { Hint::new(pattern, names) }
 }
