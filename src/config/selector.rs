@@ -43,7 +43,9 @@ impl ObjectKind {
     pub fn doc(self) -> &'static str {
         match self {
             Self::Atom => "Atoms, drawn as spheres.",
-            Self::Connector => "Bonds between two atoms, drawn as rods; each half follows its own atom.",
+            Self::Connector => {
+                "Bonds between two atoms, drawn as rods; a rule picks one if either of its atoms matches."
+            }
             Self::Ribbon => "The backbones of chains.",
             Self::Surface => "The surfaces of molecules.",
             Self::Mesh => "The triangles of mesh files.",
