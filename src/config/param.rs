@@ -420,7 +420,7 @@ mod tests {
             "no doc",
             "\"Flag\" is not",
             "\"x\": the example 7 is wrong: \"x\" is 7, but must lie in 0 to 1",
-            "\"x\": the example 07 is wrong: numbers are written like",
+            "\"x\": the example 07 is wrong: example:1:1: write 7 instead of 07",
         ] {
             assert!(wrong.contains(part), "{part} is not in\n{wrong}");
         }

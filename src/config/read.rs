@@ -96,8 +96,8 @@ impl<'a> Reader<'a> {
         let mut values = Values::defaults(params);
         for member in members {
             let Some(index) = params.iter().position(|param| param.name == member.key) else {
-                let names = params.iter().filter(|param| param.drawn).map(|param| param.name);
-                self.unknown_key(owner, member, names);
+                let names = |drawn| params.iter().filter(move |param| param.drawn == drawn).map(|param| param.name);
+                self.unknown_key_of(owner, member, |key| Hint::with_more(key, names(true), names(false)));
                 continue;
             };
             self.set(&mut values, index, &member.value);
@@ -124,13 +124,17 @@ impl<'a> Reader<'a> {
         member: &Member,
         allowed: impl IntoIterator<Item = &'static str>,
     ) {
+        self.unknown_key_of(owner, member, |key| Hint::new(key, allowed));
+    }
+
+    fn unknown_key_of(&mut self, owner: &str, member: &Member, hint: impl FnOnce(&str) -> Hint) {
         // Where a bracket is missing, a key may only have come into the wrong object.
         let is_of_style = super::style::KEYS.contains(&member.key.as_str());
         if is_of_style && !self.texts.0[member.key_span.file as usize].is_closed {
             return;
         }
         let key = member.key.clone();
-        let hint = self.hint(|| Hint::new(&key, allowed));
+        let hint = self.hint(|| hint(&key));
         self.wrong(member.key_span, Problem::UnknownKey { owner: owner.to_owned(), key, hint });
     }
 
