@@ -76,7 +76,9 @@ pub(super) fn merge_all(source: &Source, loader: &dyn Loader, texts: &mut Texts)
             None => break,
         }
     }
-    let files = chain.sources.iter().filter_map(|source| source.path.clone()).chain(chain.tried).collect();
+    // A link is watched beside what it leads to: it may come to lead elsewhere.
+    let read = chain.sources.iter().flat_map(|source| [&source.path, &source.link]).flatten().cloned();
+    let files = read.chain(chain.tried).collect();
     // A style that is unusable as a whole leaves its bases to be checked.
     let mut roots = texts.0.iter().zip(usable).rev().filter(|(_, is_usable)| *is_usable).map(|(text, _)| &text.root);
     let first = roots.next().unwrap_or(&texts.0[0].root).clone();

@@ -45,7 +45,8 @@ pub fn read_file(path: &Path) -> Result<Source, Unreadable> {
     match read_settled(path) {
         Ok(text) => {
             let canonical = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-            Ok(Source { name: path.display().to_string(), text, path: Some(canonical) })
+            let link = path.is_symlink().then(|| path.to_owned());
+            Ok(Source { name: path.display().to_string(), text, path: Some(canonical), link })
         }
         Err(reason) => {
             let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());

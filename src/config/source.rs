@@ -19,12 +19,14 @@ pub struct Source {
     /// Where it lies, if it is a file: bases are found relative to it. Two sources are one file if their paths are
     /// equal, or, without paths, their names.
     pub path: Option<PathBuf>,
+    /// The symbolic link that led there, if one did.
+    pub link: Option<PathBuf>,
 }
 
 impl Source {
     /// A text that is no file, such as an embedded look.
     pub fn new(name: impl Into<String>, text: impl Into<Vec<u8>>) -> Self {
-        Self { name: name.into(), text: text.into(), path: None }
+        Self { name: name.into(), text: text.into(), path: None, link: None }
     }
 
     /// Whether both are the same file.

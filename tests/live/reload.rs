@@ -154,6 +154,10 @@ fn a_base_that_is_missing_may_come() {
     let Some(mut live) = red("missing-base") else { return };
     live.write("s.json", "{ \"extends\": \"later.json\" }");
     assert!(live.refused().1.to_string().contains("later.json"));
+    // Longer than the time between two looks at the files, which would hide that nobody listens for it.
+    live.silent();
+    live.silent();
+    live.silent();
     live.write("later.json", &ground(BLUE));
     assert_eq!(live.taken(), Part::Style);
     assert_eq!(live.ground(), BLUE);
@@ -172,6 +176,17 @@ fn links_are_followed_to_what_they_mean() {
     live.write("far/real.json", &ground(GREEN));
     assert_eq!(live.taken(), Part::Style);
     assert_eq!(live.ground(), GREEN);
+    // A base behind a link, which then leads elsewhere.
+    live.write("far/other.json", &ground(RED));
+    std::os::unix::fs::symlink("far/real.json", live.path("base.json")).unwrap();
+    fs::remove_file(live.path("s.json")).unwrap();
+    live.write("s.json", "{ \"extends\": \"base.json\", \"camera\": { \"fov\": 20 } }");
+    assert_eq!(live.taken(), Part::Style);
+    assert_eq!(live.ground(), GREEN);
+    std::os::unix::fs::symlink("far/other.json", live.path("new.json")).unwrap();
+    fs::rename(live.path("new.json"), live.path("base.json")).unwrap();
+    assert_eq!(live.taken(), Part::Style);
+    assert_eq!(live.ground(), RED);
     // A circle of links, then an honest file.
     fs::remove_file(live.path("s.json")).unwrap();
     std::os::unix::fs::symlink("s.json", live.path("s.json")).unwrap();
