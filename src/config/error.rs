@@ -72,13 +72,15 @@ pub enum Problem {
         column: u32,
     },
     /// A key that nothing knows.
-    #[error("{owner} has no {}{hint}", quote(.key))]
+    #[error("{owner} has no {}{}{hint}", quote(.key), home.as_deref().map_or(String::new(), |home| format!(": it belongs in {home}")))]
     UnknownKey {
         /// Whose key it would be, such as `camera` or `shader "toon"`.
-        owner: String,
+        owner: Box<str>,
         /// The key as written.
-        key: String,
+        key: Box<str>,
         /// Nearest key and all keys.
+        /// Where it belongs, if another place has it.
+        home: Option<Box<str>>,
         hint: Hint,
     },
     /// A key that must be there.
