@@ -55,7 +55,7 @@ fn frames(gpu: &Arc<Gpu>) {
     }
     for round in 0..=ROUNDS {
         for (label, _, engine, times) in &mut cells {
-            match engine.draw(&REQUEST, false, &mut |_| ()) {
+            match engine.draw(&REQUEST, false, &mut |_| std::ops::ControlFlow::Continue(())) {
                 // The first round builds pipelines.
                 Ok(ms) if round > 0 => times.push(ms),
                 Ok(_) => (),

@@ -114,7 +114,7 @@ fn measure(
         return println!("{} cannot be written", folder.display());
     }
     let mut engine = Engine::live(Arc::clone(gpu), sources(&style, scene));
-    let draw = |engine: &mut Engine| engine.draw(&REQUEST, false, &mut |_| ());
+    let draw = |engine: &mut Engine| engine.draw(&REQUEST, false, &mut |_| std::ops::ControlFlow::Continue(()));
     if taken(&mut engine).is_none() || draw(&mut engine).and_then(|_| draw(&mut engine)).is_err() {
         return println!("{name}: nothing was drawn");
     }

@@ -97,6 +97,35 @@ pub(crate) fn read_style(input: &Input) -> Result<Style, Mistakes> {
     }
 }
 
+/// Why a file cannot be followed, if it cannot: a pipe gives its content once, and waits for it without end.
+fn no_file_to_follow(input: &Input) -> Option<(&Path, &'static str)> {
+    let path = input.file()?;
+    let kind = path.metadata().ok()?.file_type();
+    let is_followed = kind.is_file() || kind.is_dir();
+    (!is_followed).then_some((path, "this is a pipe or a device: --watch follows files, so save it to one"))
+}
+
+/// Reads a style with its bases, again and again.
+pub(crate) fn follow_style(input: &Input) -> Result<Style, Mistakes> {
+    match no_file_to_follow(input) {
+        Some((path, reason)) => {
+            let place = Place::of_file(&path.display().to_string());
+            Err(Mistakes::one(place, Problem::Unreadable(reason.to_owned())))
+        }
+        None => read_style(input),
+    }
+}
+
+/// Reads a scene, again and again.
+pub(crate) fn follow_scene(input: &Input, options: LoadOptions) -> Result<Scene, SceneError> {
+    match no_file_to_follow(input) {
+        Some((path, reason)) => {
+            Err(SceneError::Unsupported { file: path.display().to_string(), what: reason.to_owned() })
+        }
+        None => read_scene(input, options),
+    }
+}
+
 /// Loads a file, or a shipped molecule by its name.
 pub(crate) fn load_scene(name: &str, options: LoadOptions) -> Result<Loaded, Failure> {
     let start = Instant::now();
@@ -112,7 +141,8 @@ pub(crate) fn load_style(name: &str) -> Result<Style, Failure> {
 /// The same, with its mistakes.
 pub(crate) fn check_style(name: &str) -> Result<Style, Mistakes> {
     match find_style(name) {
-        Ok(input) if input.file().is_none_or(Path::exists) => read_style(&input),
+        // A link that leads nowhere is there, and says more of itself.
+        Ok(input) if input.file().is_none_or(|path| path.exists() || path.is_symlink()) => read_style(&input),
         // Of a file that is not there, the looks that are may be meant.
         _ => {
             let reason = unknown_reason("look", name, shipped::LOOKS);
@@ -219,7 +249,7 @@ fn is_shadowed(path: &Path) -> bool {
 }
 
 fn looks_like_a_name(path: &Path) -> bool {
-    !path.exists() && path.extension().is_none() && path.components().count() <= 1
+    !path.exists() && !path.is_symlink() && path.extension().is_none() && path.components().count() <= 1
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! `restyle render SCENE -s STYLE -o OUT.png`: one still, its AOVs, its timings.
 
 use std::io;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -126,12 +127,12 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     for limit in engine.limits_exceeded() {
         tell(format!("{}: warning: {limit}", args.style));
     }
-    let picture = draw(&mut engine, args)?;
+    let picture = draw(&mut engine, args, &|| false)?;
     let total_ms = ms_since(start);
 
     let mut frame_ms = Vec::new();
     for _ in 0..args.frames {
-        frame_ms.push(rounded(engine.draw(&args.request(), false, &mut |_| ())?));
+        frame_ms.push(rounded(engine.draw(&args.request(), false, &mut |_| ControlFlow::Continue(()))?));
     }
     write_aovs(&mut engine, args)?;
     if args.json {
@@ -153,11 +154,14 @@ pub(super) struct Drawn {
     encode_ms: f64,
 }
 
-/// Draws one picture and writes it.
-pub(super) fn draw(engine: &mut Engine, args: &Args) -> Result<Drawn, Failure> {
+/// Draws one picture and writes it, unless it `is_unwanted` before it is done.
+pub(super) fn draw(engine: &mut Engine, args: &Args, is_unwanted: &dyn Fn() -> bool) -> Result<Drawn, Failure> {
     let first = Instant::now();
     let bar = progress_bar(u64::from(args.samples), args.json);
-    engine.draw(&args.request(), false, &mut |done| bar.set_position(u64::from(done)))?;
+    engine.draw(&args.request(), false, &mut |done| {
+        bar.set_position(u64::from(done));
+        if is_unwanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })?;
     bar.finish_and_clear();
     let frame_ms = ms_since(first);
 
@@ -189,7 +193,7 @@ pub(super) fn describe(
     args: &Args,
     picture: &Drawn,
 ) -> Result<serde_json::Map<String, serde_json::Value>, Failure> {
-    engine.draw(&args.request(), true, &mut |_| ())?;
+    engine.draw(&args.request(), true, &mut |_| ControlFlow::Continue(()))?;
     let passes: serde_json::Map<String, serde_json::Value> =
         engine.pass_times().iter().map(|(name, ms)| ((*name).to_owned(), rounded(*ms).into())).collect();
     let targets: serde_json::Map<String, serde_json::Value> =

@@ -13,12 +13,20 @@ use crate::engine::{Engine, Gpu, Part, Refusal, Reload, Sources, source_tree_sha
 /// How often an interrupt is looked for while nothing happens. Ours: a key press that takes longer feels lost.
 const PATIENCE: Duration = Duration::from_millis(100);
 
+/// What a shell calls the exit of a process that was interrupted.
+const INTERRUPTED: i32 = 130;
+
 /// Draws until the process is interrupted. A style or scene that does not load is told and waited for.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let interrupted = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&interrupted);
-    // A picture that is being written is finished first. Without a handler an interrupt ends the process as ever.
-    let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
+    // A picture that is being drawn is broken off, one that is being written is finished. A second interrupt ends what
+    // does not end by itself. Without a handler, one ends the process as ever.
+    let _ = ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(INTERRUPTED);
+        }
+    });
 
     let (style, scene) = (inputs::find_style(args.style())?, inputs::find_scene(args.scene())?);
     if style.file().or(scene.file()).is_none() {
@@ -29,14 +37,15 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let options = args.load_options();
     let sources = Sources {
         style_file: style.file().map(Path::to_owned),
-        style: Box::new(move || inputs::read_style(&style)),
+        style: Box::new(move || inputs::follow_style(&style)),
         scene_file: scene.file().map(Path::to_owned),
-        scene: Box::new(move || inputs::read_scene(&scene, options)),
+        scene: Box::new(move || inputs::follow_scene(&scene, options)),
         shader_folder: source_tree_shaders(),
     };
     let mut engine = Engine::live(Arc::new(Gpu::open()?), sources);
     let mut told = Vec::new();
-    while !interrupted.load(Ordering::Relaxed) {
+    let is_interrupted = || interrupted.load(Ordering::Relaxed);
+    while !is_interrupted() {
         let mut noticed: Option<Instant> = None;
         for reload in engine.wait(PATIENCE) {
             match reload {
@@ -58,7 +67,8 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         }
         if let Some(noticed) = noticed {
             tell_warnings(&engine, args, &mut told);
-            match draw(&mut engine, args, noticed) {
+            match draw(&mut engine, args, noticed, &is_interrupted) {
+                _ if is_interrupted() => {}
                 Err(failure) if failure.code == 1 => print_message(&failure.message),
                 other => other?,
             }
@@ -87,11 +97,11 @@ fn tell_warnings(engine: &Engine, args: &Args, told: &mut Vec<String>) {
 }
 
 /// Draws and writes the picture and what else is asked for; the change was noticed at `noticed`.
-fn draw(engine: &mut Engine, args: &Args, noticed: Instant) -> Result<(), Failure> {
+fn draw(engine: &mut Engine, args: &Args, noticed: Instant, is_interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let bases: Vec<_> =
         engine.style().map_or(&[][..], |style| &style.files[..]).iter().map(|file| ("style", file.as_path())).collect();
     inputs::check_outputs(args.outputs(), &bases)?;
-    let picture = render::draw(engine, args)?;
+    let picture = render::draw(engine, args, is_interrupted)?;
     render::write_aovs(engine, args)?;
     let total_ms = noticed.elapsed().as_secs_f64() * 1e3;
     if args.json() {

@@ -42,7 +42,13 @@ impl Loader for Files {
             return Err(Unreadable::from("only a style that is a file can extend another file".to_owned()));
         };
         let beside = |path: &Path| path.parent().map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
-        let mut source = read_file(&beside(path))?;
+        let found = beside(path);
+        // Of a pipe or a device nobody knows when it ends, and --watch reads a base again and again.
+        if found.metadata().is_ok_and(|base| !base.is_file() && !base.is_dir()) {
+            let reason = "this is a pipe or a device, not a style file".to_owned();
+            return Err(Unreadable { reason, path: std::path::absolute(&found).ok() });
+        }
+        let mut source = read_file(&found)?;
         source.name = beside(Path::new(&from.name)).display().to_string();
         Ok(source)
     }

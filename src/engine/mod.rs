@@ -7,6 +7,7 @@ mod palette;
 mod pending;
 mod watch;
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -213,11 +214,17 @@ impl Engine {
         Ok(resolved_at)
     }
 
-    /// Draws one frame and waits for it; returns its milliseconds (encode, submit, idle).
+    /// Draws one frame and waits for it; returns its milliseconds (encode, submit, idle). `progress` hears of samples that
+    /// are done, and may break off.
     ///
     /// # Errors
-    /// [`GpuError`] where picture or scene do not fit the device, or the driver fails.
-    pub fn draw(&mut self, request: &Request, timed: bool, progress: &mut dyn FnMut(u32)) -> Result<f64, GpuError> {
+    /// [`GpuError`] where picture or scene do not fit the device, the driver fails, or `progress` breaks off.
+    pub fn draw(
+        &mut self,
+        request: &Request,
+        timed: bool,
+        progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
+    ) -> Result<f64, GpuError> {
         self.with_input(request, |renderer, input| {
             let start = Instant::now();
             renderer.render(input, timed, progress)?;
@@ -249,7 +256,7 @@ impl Engine {
     /// # Errors
     /// As [`Engine::draw`].
     pub fn still(&mut self, request: &Request) -> Result<Image, GpuError> {
-        self.draw(request, false, &mut |_| ())?;
+        self.draw(request, false, &mut |_| ControlFlow::Continue(()))?;
         self.read(request)
     }
 

@@ -15,6 +15,7 @@ mod targets;
 mod view;
 mod visibility;
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 pub use aov::aov_module;
@@ -208,15 +209,16 @@ impl Renderer {
         Ok(())
     }
 
-    /// Draws one still and waits for it. `timed` also measures each pass; `progress` hears of samples that are done.
+    /// Draws one still and waits for it. `timed` also measures each pass; `progress` hears of samples that are done,
+    /// and may break off.
     ///
     /// # Errors
-    /// [`GpuError`] where the picture or the objects do not fit, or the driver fails.
+    /// [`GpuError`] where the picture or the objects do not fit, the driver fails, or `progress` breaks off.
     pub fn render(
         &mut self,
         input: &FrameInput<'_>,
         timed: bool,
-        progress: &mut dyn FnMut(u32),
+        progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
     ) -> Result<(), GpuError> {
         let gpu = Arc::clone(&self.gpu);
         check_size(&gpu, input.size)?;
@@ -272,7 +274,9 @@ impl Renderer {
             if (index + 1) % SAMPLES_PER_SUBMISSION == 0 && index + 1 < samples as usize {
                 gpu.queue.submit([std::mem::replace(&mut encoder, frame_encoder(&gpu)).finish()]);
                 gpu.wait()?;
-                progress(index as u32 + 1);
+                if progress(index as u32 + 1).is_break() {
+                    return Err(GpuError::BrokenOff);
+                }
             }
         }
         if let Some(light) = &light {
@@ -316,7 +320,7 @@ impl Renderer {
     pub fn render_aovs(&mut self, input: &FrameInput<'_>) -> Result<Aovs, GpuError> {
         // 16 bits keep the linear light of the single sample.
         let single = FrameInput { samples: 1, wide: true, ..input.clone() };
-        self.render(&single, false, &mut |_| ())?;
+        self.render(&single, false, &mut |_| ControlFlow::Continue(()))?;
         let gpu = Arc::clone(&self.gpu);
         let (view, objects, reach) =
             (View::new(input.camera, input.size), &self.contents.objects, self.contents.reach());

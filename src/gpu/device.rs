@@ -44,6 +44,9 @@ pub enum GpuError {
         /// Bytes that one binding may hold.
         limit: u64,
     },
+    /// Whoever asked for the picture does not want it any more.
+    #[error("the picture was broken off")]
+    BrokenOff,
     /// A shader that was edited in a source tree does not compile.
     #[error("{0}")]
     Shader(String),

@@ -57,3 +57,13 @@ fn a_style_of_17_megabytes_and_100_000_mistakes_stay_bounded() {
     assert!(outcome.err.len() < 100_000, "{} bytes", outcome.err.len());
     assert!(outcome.err.ends_with("and 99900 more"), "{}", outcome.err);
 }
+
+#[cfg(unix)]
+#[test]
+fn a_link_that_leads_nowhere_is_no_missing_file() {
+    let folder = Folder::new("links");
+    std::os::unix::fs::symlink("b.json", folder.path("a.json")).unwrap();
+    folder.run("check a.json").refused(1, "a.json: this is a link to a file that is not there");
+    std::os::unix::fs::symlink("a.json", folder.path("b.json")).unwrap();
+    folder.run("check a.json").refused(1, "a.json: this link cannot be followed");
+}

@@ -101,6 +101,38 @@ fn files_that_do_not_load_are_waited_for() {
     assert_eq!(watching.interrupt(), Some(0));
 }
 
+#[cfg(unix)]
+#[test]
+fn an_interrupt_breaks_a_long_still_off() {
+    let Some(folder) = Folder::with_adapter("watch-long") else { return };
+    folder.write("s.json", "{ \"camera\": { \"bgcolor\": [9, 8, 7] } }");
+    let args = "render alpha_helix -s s.json -o o.png --size 2048x2048 --samples 1024 --watch";
+    let watching = Watching::start(&folder, args);
+    // Long enough for the still to begin, which would take minutes.
+    std::thread::sleep(Duration::from_millis(700));
+    assert_eq!(watching.interrupt(), Some(0));
+    assert_eq!(folder.names(), ["s.json"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_not_waited_for() {
+    let Some(folder) = Folder::with_adapter("watch-pipe") else { return };
+    let make_pipe = |name| assert!(Command::new("mkfifo").arg(folder.path(name)).status().unwrap().success());
+    let args = "render water -s s.json -o o.png --size 8x8 --samples 1 --watch";
+    make_pipe("s.json");
+    let watching = Watching::start(&folder, args);
+    watching.says("s.json: this is a pipe or a device: --watch follows files, so save it to one");
+    std::fs::remove_file(folder.path("s.json")).unwrap();
+    folder.write("s.json", "{ \"camera\": { \"bgcolor\": [9, 8, 7] } }");
+    watching.says("o.png: drawn in ");
+    make_pipe("base.json");
+    folder.write("s.json", "{ \"extends\": \"base.json\" }");
+    watching.says("cannot extend \"base.json\": this is a pipe or a device, not a style file");
+    assert_eq!(ground(&folder), [9, 8, 7]);
+    assert_eq!(watching.interrupt(), Some(0));
+}
+
 #[test]
 fn what_never_changes_is_not_watched() {
     let Some(folder) = Folder::with_adapter("watch-shipped") else { return };

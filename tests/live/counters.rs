@@ -29,7 +29,7 @@ fn parse(text: &str) -> Style {
 /// Draws and counts what that asked of the device.
 fn cost(engine: &mut Engine) -> Counters {
     let before = engine.counters();
-    engine.draw(&gpu::request([64, 48], 1), false, &mut |_| ()).unwrap();
+    engine.draw(&gpu::request([64, 48], 1), false, &mut |_| std::ops::ControlFlow::Continue(())).unwrap();
     engine.counters() - before
 }
 
@@ -178,7 +178,7 @@ fn a_scene_costs_its_upload() {
 fn another_size_costs_targets_and_lines_in_points() {
     let Some(mut engine) = warm() else { return };
     let before = engine.counters();
-    engine.draw(&gpu::request([128, 96], 1), false, &mut |_| ()).unwrap();
+    engine.draw(&gpu::request([128, 96], 1), false, &mut |_| std::ops::ControlFlow::Continue(())).unwrap();
     let cost = engine.counters() - before;
     assert_eq!((cost.pipelines_built, cost.textures_created), (0, 3), "{cost:?}");
 }

@@ -106,7 +106,9 @@ impl Live {
     }
 
     pub fn draw(&mut self) {
-        self.engine.draw(&super::gpu::request([32, 32], 1), false, &mut |_| ()).unwrap();
+        self.engine
+            .draw(&super::gpu::request([32, 32], 1), false, &mut |_| std::ops::ControlFlow::Continue(()))
+            .unwrap();
     }
 
     /// The colour that the picture's corner has.
