@@ -78,9 +78,9 @@ pub enum Problem {
         owner: Box<str>,
         /// The key as written.
         key: Box<str>,
+        /// Nearest key and all keys.
         /// Where it belongs, if another place has it.
         home: Option<Box<str>>,
-        /// Nearest key and all keys.
         hint: Hint,
     },
     /// A key that must be there.
