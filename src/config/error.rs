@@ -72,15 +72,13 @@ pub enum Problem {
         column: u32,
     },
     /// A key that nothing knows.
-    #[error("{owner} has no {}{}{hint}", quote(.key), home.as_deref().map_or(String::new(), |home| format!(": it belongs in {home}")))]
+    #[error("{owner} has no {}{hint}", quote(.key))]
     UnknownKey {
         /// Whose key it would be, such as `camera` or `shader "toon"`.
-        owner: Box<str>,
+        owner: String,
         /// The key as written.
-        key: Box<str>,
+        key: String,
         /// Nearest key and all keys.
-        /// Where it belongs, if another place has it.
-        home: Option<Box<str>>,
         hint: Hint,
     },
     /// A key that must be there.

@@ -23,7 +23,6 @@ pub mod geometry;
 mod glob;
 mod glob_set;
 pub mod hint;
-mod homes;
 pub mod length;
 mod lex;
 pub mod light;

@@ -2,11 +2,9 @@
 
 use std::collections::HashSet;
 
-use super::catalog::Catalog;
 use super::color::{BaseColor, Srgba, css_names};
 use super::error::{MOST_LISTED, Mistakes, Notice, Place, Problem, Warning};
 use super::hint::{Hint, quote};
-use super::homes::Homes;
 use super::length::Length;
 use super::param::{Kind, LARGEST, Param, Value};
 use super::parse::parse;
@@ -25,14 +23,12 @@ pub(super) struct Reader<'a> {
     /// How many more warnings there are.
     pub(super) unlisted_warnings: usize,
     told: HashSet<Notice>,
-    homes: Homes<'a>,
 }
 
 impl<'a> Reader<'a> {
     /// A reader of these texts, with the mistakes that parsing them found.
-    pub(super) fn new(texts: &'a Texts, mistakes: Mistakes, catalog: Catalog<'a>) -> Self {
-        let (warnings, told) = (Vec::new(), HashSet::new());
-        Self { texts, mistakes, warnings, unlisted_warnings: 0, told, homes: Homes::new(catalog) }
+    pub(super) fn new(texts: &'a Texts, mistakes: Mistakes) -> Self {
+        Self { texts, mistakes, warnings: Vec::new(), unlisted_warnings: 0, told: HashSet::new() }
     }
 
     /// Notes a mistake, unless it is one of a value that cannot be read, which was said.
@@ -138,16 +134,8 @@ impl<'a> Reader<'a> {
             return;
         }
         let key = member.key.clone();
-        let home = if self.mistakes.is_full() { None } else { self.homes.of(owner, &key) };
-        // A word that is right elsewhere is no slip of another one.
-        let hint = self.hint(|| match &home {
-            Some(_) => Hint { nearest: None, ..hint(&key) },
-            None => hint(&key),
-        });
-        self.wrong(
-            member.key_span,
-            Problem::UnknownKey { owner: owner.into(), key: key.into(), home: home.map(String::into), hint },
-        );
+        let hint = self.hint(|| hint(&key));
+        self.wrong(member.key_span, Problem::UnknownKey { owner: owner.to_owned(), key, hint });
     }
 
     /// A hint, unless the mistake will only be counted.

@@ -5,7 +5,6 @@ use std::collections::HashMap;
 use super::catalog::{Catalog, CatalogEntry, Role};
 use super::error::{Notice, Place, Problem};
 use super::hint::{Hint, quote};
-use super::homes::ENTRY;
 use super::param::Param;
 use super::read::{Reader, wrong_type};
 use super::style::{EffectUse, Rule};
@@ -13,7 +12,7 @@ use super::syntax::{Member, Node, Tree};
 use super::values::Values;
 
 /// The keys of one entry of `shaders`.
-pub(super) const KEYS: [&str; 3] = ["name", "shader", "properties"];
+const KEYS: [&str; 3] = ["name", "shader", "properties"];
 
 /// What every shader of objects has, so that a stand-in can keep it.
 pub(super) const SHARED: [&str; 2] = ["base_color", "opacity"];
@@ -86,7 +85,7 @@ impl<'a> Shaders<'a> {
             }
         };
         for member in members.iter().filter(|member| !KEYS.contains(&member.key.as_str())) {
-            reader.unknown_key(ENTRY, member, KEYS);
+            reader.unknown_key("a shader entry", member, KEYS);
         }
         let (name, shader) = (entry.get("name"), entry.get("shader"));
         if name.is_none() && shader.is_none() {

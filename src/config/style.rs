@@ -152,7 +152,7 @@ impl Style {
 
 /// Resolves a merged tree.
 pub(super) fn resolve(texts: &Texts, merged: Merged, catalog: &Catalog<'_>) -> Result<Style, Mistakes> {
-    let mut reader = Reader::new(texts, merged.mistakes, *catalog);
+    let mut reader = Reader::new(texts, merged.mistakes);
     let root = &merged.root;
     if let Some(node) = root.get("$id").filter(|node| node.text() == Some(super::schema::ID)) {
         let reason = "this is the schema that editors check styles with, not a style: name a style, such as one that \

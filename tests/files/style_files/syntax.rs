@@ -156,7 +156,7 @@ s.json:1:39 (mapping.atm): selector "atm": there is no type "atm"; did you mean 
     ),
     (
         r#"{ "name": "my "best" look", "camera": { "zoom": 0 } }"#,
-        r#"s.json:1:3 (name): a style has no "name": it belongs in an entry of "shaders"; allowed: $schema, version, extends, camera, geometry, mapping, shaders, lights, transparency
+        r#"s.json:1:3 (name): a style has no "name"; allowed: $schema, version, extends, camera, geometry, mapping, shaders, lights, transparency
 s.json:1:15: this quote ends the text: a quote within a text is written \"
 s.json:1:49 (camera.zoom): "zoom" is 0, but must lie in 0.01 to 1000"#,
     ),
