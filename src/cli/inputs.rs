@@ -201,9 +201,13 @@ pub(crate) fn unknown(what: &str, name: &str, among: &'static [Shipped]) -> Fail
 }
 
 fn unknown_reason(what: &str, name: &str, among: &'static [Shipped]) -> String {
+    // The longest name of a file is longer than any that is worth comparing.
+    let word = if name.len() > 64 { "" } else { name };
+    let word = word.rsplit(['/', '\\']).next().unwrap_or(word).to_lowercase();
+    let word = word.strip_suffix(".json").unwrap_or(&word);
     let nearest = among
         .iter()
-        .map(|shipped| (strsim::damerau_levenshtein(shipped.name, name), shipped.name))
+        .map(|shipped| (strsim::damerau_levenshtein(shipped.name, word), shipped.name))
         .min()
         .filter(|(distance, nearest)| *distance <= nearest.len() / 2);
     let hint = nearest.map_or(String::new(), |(_, nearest)| format!("did you mean {nearest:?}? "));

@@ -27,6 +27,9 @@ pub(super) fn read(run: &str) -> Result<Tree, BareSlip> {
     if run.parse::<Length>().is_ok() {
         return slip(false, format!("a length with a unit needs quotes: write {}", quote(run)));
     }
+    if let Some(meant) = mend_unit(run) {
+        return slip(false, format!("write {meant} instead of {}", short(run)));
+    }
     let lower = run.to_ascii_lowercase();
     match lower.trim_start_matches(['-', '+']) {
         "nan" | "inf" | "infinity" => {
@@ -122,6 +125,23 @@ fn mend_number(run: &str) -> Option<String> {
     (is_known && is_number(&mended)).then_some(mended)
 }
 
+/// What was meant by a number with a unit or a sign that other programs take: `50%`, `35°`, `2px`, or a minus of print.
+fn mend_unit(run: &str) -> Option<String> {
+    let with_minus = run.strip_prefix(['\u{2212}', '\u{2013}']).map(|rest| format!("-{rest}"));
+    if let Some(number) = with_minus.filter(|number| is_number(number)) {
+        return Some(number);
+    }
+    let number = |unit| run.strip_suffix(unit).filter(|number| is_number(number));
+    if let Some(percent) = number("%") {
+        let percent: f64 = percent.parse().ok()?;
+        return Some(super::hint::number(percent / 100.0));
+    }
+    number("\u{b0}")
+        .or_else(|| number("deg"))
+        .map(str::to_owned)
+        .or_else(|| Some(quote(&format!("{}pt", number("px")?))))
+}
+
 /// `true`, `false` or `null`, where another language's word or a part of one stands.
 fn mend_literal(lower: &str) -> Option<&'static str> {
     match lower {
@@ -168,6 +188,10 @@ mod tests {
             ("True", "write true instead of True"),
             ("None", "write null instead of None"),
             ("nul", "write null instead of nul"),
+            ("50%", "write 0.5 instead of 50%"),
+            ("35\u{b0}", "write 35 instead of 35\u{b0}"),
+            ("2px", "write \"2pt\" instead of 2px"),
+            ("\u{2212}1.5", "write -1.5 instead of \u{2212}1.5"),
             ("full", "a text needs quotes: write \"full\""),
             ("-Infinity", "-Infinity is no number that a style can hold: write one such as 12 or -0.5"),
             ("#c0392b", "a colour needs quotes: write \"#c0392b\""),

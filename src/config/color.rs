@@ -38,6 +38,22 @@ impl Srgba {
     }
 }
 
+impl Srgba {
+    /// The colour that was meant by what other programs write: `rgb(255, 0, 0)`, `255, 0, 0` or `ff0000`.
+    pub(super) fn meant(text: &str) -> Option<Self> {
+        /// Longer than any way to write a colour.
+        const LONGEST: usize = 64;
+        let text = text.trim();
+        if text.len() > LONGEST {
+            return None;
+        }
+        let is_bare = text.starts_with(|c: char| c.is_ascii_digit()) && text.contains(',');
+        let written = if is_bare { format!("rgb({text})") } else { text.to_owned() };
+        let color = csscolorparser::parse(&written).ok()?;
+        Some(Self { rgba: [color.r, color.g, color.b, color.a] })
+    }
+}
+
 /// The CSS names of colours.
 pub fn css_names() -> impl Iterator<Item = &'static str> {
     csscolorparser::NAMED_COLORS.keys().map(|name| name.as_str())

@@ -49,6 +49,18 @@ impl fmt::Display for Place {
     }
 }
 
+/// Where a key belongs, or else what may stand in its place.
+struct Whither<'a>(Option<&'a str>, &'a Hint);
+
+impl fmt::Display for Whither<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Some(home) => write!(f, ": {home}"),
+            None => self.1.fmt(f),
+        }
+    }
+}
+
 /// What is wrong, without the place.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Problem {
@@ -62,7 +74,7 @@ pub enum Problem {
     #[error("{0}")]
     Syntax(String),
     /// The same key twice in one object.
-    #[error("duplicate key {}: it is already at {line}:{column}", quote(.key))]
+    #[error("duplicate key {}: it is already at {line}:{column}; keep one of them", quote(.key))]
     DuplicateKey {
         /// The key.
         key: String,
@@ -72,12 +84,14 @@ pub enum Problem {
         column: u32,
     },
     /// A key that nothing knows.
-    #[error("{owner} has no {}{hint}", quote(.key))]
+    #[error("{owner} has no {}{}", quote(.key), Whither(.home.as_deref(), .hint))]
     UnknownKey {
         /// Whose key it would be, such as `camera` or `shader "toon"`.
-        owner: String,
+        owner: Box<str>,
         /// The key as written.
-        key: String,
+        key: Box<str>,
+        /// Where it belongs, such as `it belongs in "camera"`, if it belongs elsewhere.
+        home: Option<Box<str>>,
         /// Nearest key and all keys.
         hint: Hint,
     },
@@ -92,7 +106,7 @@ pub enum Problem {
         hint: Hint,
     },
     /// A value of another JSON type, or a list of another length.
-    #[error("{} must be {expected}, not {found}", quote(.name))]
+    #[error("{} must be {expected}, not {found}{advice}", quote(.name))]
     WrongType {
         /// The key.
         name: String,
@@ -100,6 +114,8 @@ pub enum Problem {
         expected: String,
         /// What is there, such as `the text "four"`.
         found: String,
+        /// What to write, such as `: write 4`; empty where nobody can tell.
+        advice: String,
     },
     /// A number outside what its parameter allows.
     #[error("{} is {}, but must {allowed}", quote(.name), number(*.value))]
@@ -171,12 +187,14 @@ pub enum Problem {
         hint: Hint,
     },
     /// A text that is no length.
-    #[error("{} is {}, which is no length: write a number (radii of the scene), \"2pt\", \"3r\", \"1.5A\" or \"2mm\"", quote(.name), quote(.value))]
+    #[error("{} is {}, which is no length: write a number (radii of the scene), \"2pt\", \"3r\", \"1.5A\" or \"2mm\"{hint}", quote(.name), quote(.value))]
     BadLength {
         /// The key.
         name: String,
         /// The text as written.
         value: String,
+        /// The length that was meant.
+        hint: Hint,
     },
     /// A key of `mapping` that is no selector.
     #[error("selector {}: {reason}{hint}", quote(.text))]
@@ -237,6 +255,7 @@ impl Problem {
             | Self::EffectAsShader { hint, .. }
             | Self::ShaderAsEffect { hint, .. }
             | Self::BadColor { hint, .. }
+            | Self::BadLength { hint, .. }
             | Self::BadSelector { hint, .. } => Some(hint),
             _ => None,
         }

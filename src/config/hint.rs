@@ -122,7 +122,9 @@ pub(super) fn shorten(text: &str) -> String {
         }
         // A line break, or a mark that turns the writing direction, would break the one-line format.
         let turns_text = matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-        if c.is_control() || turns_text {
+        // A mark that shows nothing would make two words look alike.
+        let is_unseen = matches!(c, '\u{ad}' | '\u{200b}' | '\u{2060}' | '\u{feff}');
+        if c.is_control() || turns_text || is_unseen {
             shown.extend(c.escape_default());
         } else {
             shown.push(c);

@@ -14,6 +14,7 @@ pub mod camera;
 pub mod catalog;
 pub mod color;
 pub mod diagnostic;
+mod elsewhere;
 pub mod error;
 mod escape;
 pub mod explain;

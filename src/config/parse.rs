@@ -15,6 +15,9 @@ use super::slips::Slips;
 use super::source::{Positions, Source, Text};
 use super::syntax::{MAX_BYTES, MAX_DEPTH, MAX_VALUES, Member, Node, Span, Tree, find_duplicates};
 
+/// How many bytes are looked at for a sign that the file is no text.
+const MOST_LOOKED_AT: usize = 4096;
+
 /// Parses a source as text number `file` of its style. What is wrong is pushed onto `mistakes`; a text in which nothing
 /// can be read has a root that is [`Tree::Broken`].
 pub(super) fn parse(source: &Source, file: u32, mistakes: &mut Mistakes) -> Text {
@@ -40,6 +43,9 @@ pub(super) fn parse(source: &Source, file: u32, mistakes: &mut Mistakes) -> Text
     // A zero as one of the first two bytes is UTF-16, also without a mark: nothing in it can be read.
     let is_wide =
         bytes.starts_with(b"\xFF\xFE") || bytes.starts_with(b"\xFE\xFF") || bytes.iter().take(2).any(|byte| *byte == 0);
+    // What has both is no text at all, such as a picture.
+    let is_binary = first_bad.is_some() && bytes.iter().take(MOST_LOOKED_AT).any(|byte| *byte == 0);
+    let is_wide = is_wide || is_binary;
     if is_wide || first_bad.is_some() {
         let offset = if is_wide { 0 } else { first_bad.unwrap_or(0) };
         let (line, column) = text.positions.line_column(bytes, offset);
@@ -484,6 +490,7 @@ impl Parser<'_> {
                 Some(start) => {
                     let number = self.lexer.slice(&(start..range.end)).replace(',', ".");
                     self.tell(start..range.end, || format!("a decimal number has a point: write {number}"));
+                    self.broken(start..range.end);
                 }
                 None => self.tell(range.clone(), || format!("{run} has no key: write a key and a colon before it")),
             }

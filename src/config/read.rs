@@ -2,7 +2,9 @@
 
 use std::collections::HashSet;
 
+use super::catalog::{Catalog, CatalogEntry};
 use super::color::{BaseColor, Srgba, css_names};
+use super::elsewhere::{begins_selector, home, is_same_word};
 use super::error::{MOST_LISTED, Mistakes, Notice, Place, Problem, Warning};
 use super::hint::{Hint, quote};
 use super::length::Length;
@@ -18,6 +20,7 @@ type Wrong = (Span, Problem);
 /// What goes through a style: its texts, and what was found so far.
 pub(super) struct Reader<'a> {
     pub(super) texts: &'a Texts,
+    catalog: Catalog<'a>,
     pub(super) mistakes: Mistakes,
     pub(super) warnings: Vec<Warning>,
     /// How many more warnings there are.
@@ -27,8 +30,8 @@ pub(super) struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     /// A reader of these texts, with the mistakes that parsing them found.
-    pub(super) fn new(texts: &'a Texts, mistakes: Mistakes) -> Self {
-        Self { texts, mistakes, warnings: Vec::new(), unlisted_warnings: 0, told: HashSet::new() }
+    pub(super) fn new(texts: &'a Texts, catalog: Catalog<'a>, mistakes: Mistakes) -> Self {
+        Self { texts, catalog, mistakes, warnings: Vec::new(), unlisted_warnings: 0, told: HashSet::new() }
     }
 
     /// Notes a mistake, unless it is one of a value that cannot be read, which was said.
@@ -75,7 +78,9 @@ impl<'a> Reader<'a> {
         match &node.value {
             Tree::List(items) => items,
             _ => {
-                self.wrong(node.span, wrong_type(name, "a list", node));
+                let in_brackets = matches!(node.value, Tree::Object(_) | Tree::Text(_));
+                let write = in_brackets.then(|| "[ before it and ] after it".to_owned());
+                self.wrong(node.span, wrong_type_but(name, "a list", node, write));
                 &[]
             }
         }
@@ -97,7 +102,7 @@ impl<'a> Reader<'a> {
         for member in members {
             let Some(index) = params.iter().position(|param| param.name == member.key) else {
                 let names = |drawn| params.iter().filter(move |param| param.drawn == drawn).map(|param| param.name);
-                self.unknown_key_of(owner, member, |key| Hint::with_more(key, names(true), names(false)));
+                self.unknown_key_of(owner, member, names(true), names(false), None);
                 continue;
             };
             self.set(&mut values, index, &member.value);
@@ -117,25 +122,45 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Notes a key that nothing knows; `allowed` are the keys that something does.
+    /// Notes a key that nothing knows where it stands; `allowed` are the keys that may stand there. `entry` is the shader of
+    /// the entry that it stands in, if it stands in one.
     pub(super) fn unknown_key(
         &mut self,
         owner: &str,
         member: &Member,
-        allowed: impl IntoIterator<Item = &'static str>,
+        allowed: impl IntoIterator<Item = &'static str> + Clone,
+        entry: Option<&CatalogEntry>,
     ) {
-        self.unknown_key_of(owner, member, |key| Hint::new(key, allowed));
+        self.unknown_key_of(owner, member, allowed, [], entry);
     }
 
-    fn unknown_key_of(&mut self, owner: &str, member: &Member, hint: impl FnOnce(&str) -> Hint) {
+    /// Whether a key of `mapping` that is no selector is known elsewhere.
+    pub(super) fn is_stray(&self, key: &str) -> bool {
+        !self.mistakes.is_full() && !begins_selector(key) && home(key, &self.catalog, None).is_some()
+    }
+
+    fn unknown_key_of(
+        &mut self,
+        owner: &str,
+        member: &Member,
+        allowed: impl IntoIterator<Item = &'static str> + Clone,
+        also: impl IntoIterator<Item = &'static str> + Clone,
+        entry: Option<&CatalogEntry>,
+    ) {
         // Where a bracket is missing, a key may only have come into the wrong object.
         let is_of_style = super::style::KEYS.contains(&member.key.as_str());
         if is_of_style && !self.texts.0[member.key_span.file as usize].is_closed {
             return;
         }
         let key = member.key.clone();
-        let hint = self.hint(|| hint(&key));
-        self.wrong(member.key_span, Problem::UnknownKey { owner: owner.to_owned(), key, hint });
+        let is_slip = || allowed.clone().into_iter().chain(also.clone()).any(|name| is_same_word(&key, name));
+        let home = if self.mistakes.is_full() || is_slip() { None } else { home(&key, &self.catalog, entry) };
+        let mut hint = self.hint(|| Hint::with_more(&key, allowed.clone(), also.clone()));
+        if home.is_some() {
+            hint.nearest = None;
+        }
+        let (owner, key, home) = (owner.into(), key.into(), home.map(String::into_boxed_str));
+        self.wrong(member.key_span, Problem::UnknownKey { owner, key, home, hint });
     }
 
     /// A hint, unless the mistake will only be counted.
@@ -144,9 +169,17 @@ impl<'a> Reader<'a> {
     }
 }
 
+/// The same with what to write instead.
+pub(super) fn wrong_type_but(name: &str, expected: &str, node: &Node, write: Option<String>) -> Problem {
+    let (expected, found) = (expected.to_owned(), node.describe());
+    let advice = write.map(|write| format!(": write {write}")).unwrap_or_default();
+    Problem::WrongType { name: name.to_owned(), expected, found, advice }
+}
+
 /// A value of another type than is due.
 pub(super) fn wrong_type(name: &str, expected: &str, node: &Node) -> Problem {
-    Problem::WrongType { name: name.to_owned(), expected: expected.to_owned(), found: node.describe() }
+    let (expected, found) = (expected.to_owned(), node.describe());
+    Problem::WrongType { name: name.to_owned(), expected, found, advice: String::new() }
 }
 
 /// Reads one value as its parameter asks. With hints, the names of colours are searched for one that is near.
@@ -199,7 +232,22 @@ fn number(param: &Param, node: &Node, expected: &str) -> Result<f64, Wrong> {
     match node.value {
         Tree::Number(n) if param.allows(n) => Ok(n),
         Tree::Number(n) => Err((node.span, out_of_range(param, n, due(n, param.allowed())))),
-        _ => Err((node.span, wrong_type(param.name, expected, node))),
+        _ => {
+            let meant = node.text().and_then(number_in).filter(|n| param.allows(*n));
+            Err((node.span, wrong_type_but(param.name, expected, node, meant.map(super::hint::number))))
+        }
+    }
+}
+
+/// The number that a text was meant to be: `"35"`, `"35deg"`, `"50%"`.
+fn number_in(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let end = text.find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | '-' | '+'))).unwrap_or(text.len());
+    let number: f64 = text[..end].parse().ok()?;
+    match text[end..].trim() {
+        "%" => Some(number / 100.0),
+        "" | "deg" | "°" | "x" | "px" | "pt" => Some(number),
+        _ => None,
     }
 }
 
@@ -217,7 +265,7 @@ fn length(param: &Param, node: &Node) -> Result<Length, Wrong> {
         let expected = "a number (radii of the scene) or a text such as \"2pt\", \"3r\", \"1.5A\" or \"2mm\"";
         return number(param, node, expected).map(Length::Radii);
     };
-    let bad = || Problem::BadLength { name: param.name.to_owned(), value: text.to_owned() };
+    let bad = || Problem::BadLength { name: param.name.to_owned(), value: text.to_owned(), hint: length_hint(text) };
     let length: Length = text.parse().map_err(|_| (node.span, bad()))?;
     let (lowest, highest) = param.length_bounds(length);
     if (lowest..=highest).contains(&length.number()) {
@@ -228,6 +276,21 @@ fn length(param: &Param, node: &Node) -> Result<Length, Wrong> {
         (lowest, highest) => format!("lie in {lowest:e} to {highest:e} {}", length.unit()),
     };
     Err((node.span, out_of_range(param, length.number(), due(length.number(), allowed))))
+}
+
+/// The length that was meant by a unit of another language, or one that is written in another way.
+fn length_hint(text: &str) -> Hint {
+    let text = text.trim();
+    let (number, unit) = text.split_at(text.find(|c: char| c.is_alphabetic()).unwrap_or(text.len()));
+    let unit = match unit.to_lowercase().as_str() {
+        "px" | "pt" | "pts" | "point" | "points" => "pt",
+        "a" | "ang" | "angstrom" | "angstroms" | "\u{e5}" | "\u{e5}ngstr\u{f6}m" => "A",
+        "mm" | "millimetre" | "millimeter" => "mm",
+        "r" => "r",
+        _ => return Hint::NONE,
+    };
+    let meant = format!("{}{unit}", number.trim());
+    Hint { nearest: meant.parse::<Length>().is_ok().then_some(meant), allowed: Vec::new() }
 }
 
 fn choice_or_length(param: &Param, of: &'static [&'static str], node: &Node) -> Result<Value, Wrong> {
@@ -273,7 +336,11 @@ fn color(param: &Param, other_words: &[&'static str], node: &Node, with_hints: b
     match &node.value {
         Tree::Text(text) => Srgba::parse(text).ok_or_else(|| {
             let words = css_names().chain(other_words.iter().copied());
-            let near = if with_hints { Hint::nearest_of(text, words) } else { Hint::NONE };
+            let near = match Srgba::meant(text) {
+                Some(meant) => Hint { nearest: Some(meant.to_string()), allowed: Vec::new() },
+                None if with_hints => Hint::nearest_of(text, words),
+                None => Hint::NONE,
+            };
             (node.span, bad(near))
         }),
         Tree::List(items) if items.len() == 3 || items.len() == 4 => {

@@ -163,6 +163,18 @@ impl PartialEq for Selector {
     }
 }
 
+/// The selector that was meant by what other programs call it.
+fn meant(text: &str) -> Option<String> {
+    match text.to_lowercase().as_str() {
+        "bond" | "bonds" | "stick" | "sticks" => return Some("connector".to_owned()),
+        "all" | "any" | "default" | "everything" => return Some("*".to_owned()),
+        _ => {}
+    }
+    let (attribute, _) = text.trim_matches(['[', ']']).split_once('=')?;
+    let is_known = Attribute::ALL.iter().any(|known| known.name() == attribute.trim());
+    is_known.then(|| format!("*[{}]", text.trim_matches(['[', ']'])))
+}
+
 impl Selector {
     /// Parses a key of `mapping`.
     pub fn parse(text: &str) -> Result<Self, Problem> {
@@ -174,7 +186,8 @@ impl Selector {
         if kind.is_none() && kind_name != "*" {
             let words = ObjectKind::ALL.into_iter().map(ObjectKind::name).chain(["*", "post_effects"]);
             let reason = format!("there is no type {}", super::hint::quote(kind_name));
-            return Err(bad(reason, Hint::new(kind_name, words)));
+            let hint = Hint { nearest: meant(trimmed), ..Hint::list(words.clone()) };
+            return Err(bad(reason, if hint.nearest.is_some() { hint } else { Hint::new(kind_name, words) }));
         }
         let mut conditions = Vec::new();
         while let Some(after) = rest.strip_prefix('[') {

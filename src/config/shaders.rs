@@ -6,7 +6,7 @@ use super::catalog::{Catalog, CatalogEntry, Role};
 use super::error::{Notice, Place, Problem};
 use super::hint::{Hint, quote};
 use super::param::Param;
-use super::read::{Reader, wrong_type};
+use super::read::{Reader, wrong_type, wrong_type_but};
 use super::style::{EffectUse, Rule};
 use super::syntax::{Member, Node, Tree};
 use super::values::Values;
@@ -52,15 +52,18 @@ pub(super) struct Shaders<'a> {
     /// `None`: declared, but so wrong that it cannot be used; what refers to it is no further mistake.
     declared: HashMap<String, Option<usize>>,
     undeclared: HashMap<&'static str, usize>,
+    /// Whether `shaders` is no list, so that nobody knows what it declares.
+    is_lost: bool,
 }
 
 impl<'a> Shaders<'a> {
     pub(super) fn new(catalog: Catalog<'a>) -> Self {
-        Self { catalog, uses: Vec::new(), declared: HashMap::new(), undeclared: HashMap::new() }
+        Self { catalog, uses: Vec::new(), declared: HashMap::new(), undeclared: HashMap::new(), is_lost: false }
     }
 
     /// Reads the list `shaders`.
     pub(super) fn declare(&mut self, reader: &mut Reader<'_>, node: &Node) {
+        self.is_lost = !matches!(node.value, Tree::List(_));
         let mut first = HashMap::new();
         for entry in reader.list("shaders", node) {
             let Some(name) = self.declare_one(reader, entry) else {
@@ -84,8 +87,9 @@ impl<'a> Shaders<'a> {
                 return None;
             }
         };
+        let meant = entry.get("shader").and_then(Node::text).and_then(|name| self.catalog.get(name));
         for member in members.iter().filter(|member| !KEYS.contains(&member.key.as_str())) {
-            reader.unknown_key("a shader entry", member, KEYS);
+            reader.unknown_key("a shader entry", member, KEYS, meant);
         }
         let (name, shader) = (entry.get("name"), entry.get("shader"));
         if name.is_none() && shader.is_none() {
@@ -197,7 +201,14 @@ impl<'a> Shaders<'a> {
             Role::PostEffect => "a list of names of post effects",
         };
         let Some(name) = node.text() else {
-            reader.wrong(node.span, wrong_type(key, expected, node));
+            let write = match (&node.value, role) {
+                (Tree::Bool(false), Role::Object) => Some("null".to_owned()),
+                (Tree::Object(_), Role::Object) => {
+                    Some("it as an entry of \"shaders\" with a \"name\", and that name here".to_owned())
+                }
+                _ => None,
+            };
+            reader.wrong(node.span, wrong_type_but(key, expected, node, write));
             return None;
         };
         if let Some(index) = self.declared.get(name) {
@@ -205,6 +216,16 @@ impl<'a> Shaders<'a> {
             return self.check_role(reader, node, name, self.uses[index].role, role).then_some(index);
         }
         let Some(entry) = self.catalog.get(name) else {
+            let hides = ["none", "hidden", "hide", "null", "off", "false"];
+            if role == Role::Object && hides.contains(&name.to_lowercase().as_str()) {
+                let problem = wrong_type_but(key, expected, node, Some("null, without quotes, to hide".to_owned()));
+                reader.missing(node.span, problem);
+                return None;
+            }
+            // What a list without brackets declares is not known.
+            if self.is_lost {
+                return None;
+            }
             let what = if role == Role::Object { "shader" } else { "post effect" };
             let hint = reader.hint(|| self.names(name, role));
             reader.missing(node.span, Problem::UnknownName { what, name: name.to_owned(), hint });

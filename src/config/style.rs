@@ -28,7 +28,7 @@ pub const KEYS: [&str; 9] =
     ["$schema", "version", "extends", "camera", "geometry", "mapping", "shaders", "lights", "transparency"];
 
 /// The key of `mapping` that lists post effects.
-const POST_EFFECTS: &str = "post_effects";
+pub(super) const POST_EFFECTS: &str = "post_effects";
 
 /// One line of `mapping`.
 #[derive(Debug, Clone, PartialEq)]
@@ -152,7 +152,7 @@ impl Style {
 
 /// Resolves a merged tree.
 pub(super) fn resolve(texts: &Texts, merged: Merged, catalog: &Catalog<'_>) -> Result<Style, Mistakes> {
-    let mut reader = Reader::new(texts, merged.mistakes);
+    let mut reader = Reader::new(texts, *catalog, merged.mistakes);
     let root = &merged.root;
     if let Some(node) = root.get("$id").filter(|node| node.text() == Some(super::schema::ID)) {
         let reason = "this is the schema that editors check styles with, not a style: name a style, such as one that \
@@ -162,7 +162,7 @@ pub(super) fn resolve(texts: &Texts, merged: Merged, catalog: &Catalog<'_>) -> R
     }
     for member in reader.object("style", root) {
         if !KEYS.contains(&member.key.as_str()) {
-            reader.unknown_key("a style", member, KEYS);
+            reader.unknown_key("a style", member, KEYS, None);
         }
     }
     if let Some(schema) = root.get("$schema") {
@@ -247,7 +247,19 @@ fn read_mapping(
             }
             continue;
         }
-        let selector = Selector::parse(&member.key).map_err(|problem| reader.wrong(member.key_span, problem));
+        let selector = match Selector::parse(&member.key) {
+            Ok(selector) => Some(selector),
+            // What is no selector may be a key of another part, whose value is then no name of a shader.
+            Err(_) if reader.is_stray(&member.key) => {
+                let kinds = ObjectKind::ALL.into_iter().map(ObjectKind::name);
+                reader.unknown_key("mapping", member, kinds.chain(["*", POST_EFFECTS]), None);
+                continue;
+            }
+            Err(problem) => {
+                reader.wrong(member.key_span, problem);
+                None
+            }
+        };
         let target = match &member.value.value {
             Tree::Null => None,
             _ => match shaders.resolve(reader, &member.key, &member.value, Role::Object) {
@@ -255,7 +267,7 @@ fn read_mapping(
                 None => continue,
             },
         };
-        let Ok(selector) = selector else { continue };
+        let Some(selector) = selector else { continue };
         let place = reader.texts.place(member.key_span);
         if let Some(kind) = selector.kind().filter(|kind| !catalog.kinds.contains(kind)) {
             reader.warn(place.clone(), Notice::TypeNotDrawn { name: kind.name() });

@@ -63,9 +63,9 @@ impl Image {
                 values.chunks_exact(4).flat_map(|pixel| &pixel[..keep]).flat_map(|value| value.to_be_bytes()).collect()
             }
         };
-        let mut writer = encoder.write_header().map_err(io::Error::other)?;
-        writer.write_image_data(&bytes).map_err(io::Error::other)?;
-        writer.finish().map_err(io::Error::other)
+        let mut writer = encoder.write_header().map_err(of_png)?;
+        writer.write_image_data(&bytes).map_err(of_png)?;
+        writer.finish().map_err(of_png)
     }
 }
 
@@ -108,6 +108,14 @@ pub fn write_whole(path: &Path, content: impl FnOnce(&mut BufWriter<File>) -> io
         let _ = std::fs::remove_file(&beside);
     }
     result
+}
+
+/// What the writer said, such as that the disk is full, without the words of the encoder around it.
+fn of_png(error: png::EncodingError) -> io::Error {
+    match error {
+        png::EncodingError::IoError(error) => error,
+        other => io::Error::other(other),
+    }
 }
 
 /// Where a file will be that is not there yet, but that links may lead to.

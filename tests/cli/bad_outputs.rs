@@ -86,7 +86,7 @@ fn devices_and_pipes_are_written_to_and_stay_what_they_are() {
     symlink("/dev/full", folder.path("full")).unwrap();
     symlink("/dev/stdout", folder.path("stdout")).unwrap();
     folder.run("render c60 -o null --aov depth=null --size 8x8 --samples 1").done();
-    folder.run("render c60 -o full --size 8x8 --samples 1").refused(1, "full: ");
+    folder.run("render c60 -o full --size 8x8 --samples 1").refused(1, "full: the disk is full; free some space");
     let picture = folder.path("piped.png");
     let args = "render c60 -o stdout --size 8x8 --samples 1";
     folder

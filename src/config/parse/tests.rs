@@ -41,9 +41,9 @@ fn every_duplicate_is_found() {
     let (_, mistakes) = parsed("{\"a\":1,\n\"a\":{\"b\":1,\"b\":2,\"b\":3}}");
     assert_eq!(
         mistakes.to_string(),
-        "s.json:2:1 (a): duplicate key \"a\": it is already at 1:2\n\
-         s.json:2:12 (a.b): duplicate key \"b\": it is already at 2:6\n\
-         s.json:2:18 (a.b): duplicate key \"b\": it is already at 2:6"
+        "s.json:2:1 (a): duplicate key \"a\": it is already at 1:2; keep one of them\n\
+         s.json:2:12 (a.b): duplicate key \"b\": it is already at 2:6; keep one of them\n\
+         s.json:2:18 (a.b): duplicate key \"b\": it is already at 2:6; keep one of them"
     );
 }
 

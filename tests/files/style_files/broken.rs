@@ -74,7 +74,7 @@ const BROKEN: &[(&str, &str)] = &[
     ),
     (
         r#"{ "camera": { "bgcolor": "ffffff" } }"#,
-        r##"s.json:1:26 (camera.bgcolor): "bgcolor" is the text "ffffff", which is no colour: write [r, g, b] or [r, g, b, a] in 0 to 255, "#rrggbb" or a CSS name"##,
+        r##"s.json:1:26 (camera.bgcolor): "bgcolor" is the text "ffffff", which is no colour: write [r, g, b] or [r, g, b, a] in 0 to 255, "#rrggbb" or a CSS name; did you mean "#ffffff"?"##,
     ),
     (
         r#"{ "camera": { "up": [0, 0, 0] } }"#,
@@ -90,7 +90,7 @@ const BROKEN: &[(&str, &str)] = &[
     ),
     (
         r#"{ "camera": { "fov": 30, "fov": 40 } }"#,
-        r#"s.json:1:26 (camera.fov): duplicate key "fov": it is already at 1:15"#,
+        r#"s.json:1:26 (camera.fov): duplicate key "fov": it is already at 1:15; keep one of them"#,
     ),
     (
         r#"{ "camera": { "orient": "Principal" } }"#,
@@ -110,7 +110,7 @@ const BROKEN: &[(&str, &str)] = &[
     ),
     (
         r#"{ "geometry": { "atom": "2px" } }"#,
-        r#"s.json:1:25 (geometry.atom): "atom" is "2px", which is no length: write a number (radii of the scene), "2pt", "3r", "1.5A" or "2mm""#,
+        r#"s.json:1:25 (geometry.atom): "atom" is "2px", which is no length: write a number (radii of the scene), "2pt", "3r", "1.5A" or "2mm"; did you mean "2pt"?"#,
     ),
     (
         r#"{ "geometry": { "bond_radius": "-1A" } }"#,
@@ -130,7 +130,7 @@ const BROKEN: &[(&str, &str)] = &[
     ),
     (
         r#"{ "lights": {} }"#,
-        r#"s.json:1:13 (lights): "lights" must be a list, not an object"#,
+        r#"s.json:1:13 (lights): "lights" must be a list, not an object: write [ before it and ] after it"#,
     ),
     (
         r#"{ "lights": [{ "type": "sun" }] }"#,
@@ -175,7 +175,7 @@ s.json:1:35 (lights[1]): "light" must be an object, not the number 7"#,
     ),
     (
         r#"{ "mapping": { "post_effects": "dofPost" } }"#,
-        r#"s.json:1:32 (mapping.post_effects): "post_effects" must be a list, not the text "dofPost""#,
+        r#"s.json:1:32 (mapping.post_effects): "post_effects" must be a list, not the text "dofPost": write [ before it and ] after it"#,
     ),
     (
         r#"{ "mapping": { "post_effects": ["toon"] } }"#,
@@ -192,7 +192,7 @@ s.json:1:41 (mapping.post_effects[1]): "post_effects" must be a list of names of
     ),
     (
         r#"{ "shaders": {} }"#,
-        r#"s.json:1:14 (shaders): "shaders" must be a list, not an object"#,
+        r#"s.json:1:14 (shaders): "shaders" must be a list, not an object: write [ before it and ] after it"#,
     ),
     (
         r#"{ "shaders": [ "toon" ] }"#,
@@ -205,7 +205,7 @@ s.json:1:41 (mapping.post_effects[1]): "post_effects" must be a list of names of
     (
         r#"{ "shaders": [{ "lights": [] }] }"#,
         r#"s.json:1:15 (shaders[0]): this shader entry has neither "name" nor "shader", so nothing can use it: name it or remove it
-s.json:1:17 (shaders[0].lights): a shader entry has no "lights"; allowed: name, shader, properties"#,
+s.json:1:17 (shaders[0].lights): a shader entry has no "lights": it belongs at the top of the style"#,
     ),
     (
         r#"{ "shaders": [{ "name": "a" }] }"#,
@@ -229,7 +229,7 @@ s.json:1:17 (shaders[0].lights): a shader entry has no "lights"; allowed: name, 
     ),
     (
         r#"{ "shaders": [{ "name": "a", "shader": "toon", "properties": { "hull_size": "2px" } }] }"#,
-        r#"s.json:1:77 (shaders[0].properties.hull_size): "hull_size" is "2px", which is no length: write a number (radii of the scene), "2pt", "3r", "1.5A" or "2mm""#,
+        r#"s.json:1:77 (shaders[0].properties.hull_size): "hull_size" is "2px", which is no length: write a number (radii of the scene), "2pt", "3r", "1.5A" or "2mm"; did you mean "2pt"?"#,
     ),
     (
         r#"{ "shaders": [{ "name": "a", "shader": "toon", "properties": { "hull_size": 2 } }] }"#,

@@ -8,5 +8,6 @@ mod loading;
 pub mod mutations;
 mod resolving;
 mod source_lines;
+mod strays;
 mod syntax;
 mod warnings;

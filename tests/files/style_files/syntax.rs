@@ -167,7 +167,7 @@ s.json:1:49 (camera.zoom): "zoom" is 0, but must lie in 0.01 to 1000"#,
     (
         r#"{ "camera": { "bgcolor": [1, 2, 3 }, "lights": {} }"#,
         r#"s.json:1:35: the [ at 1:26 is not closed: write ] before this }
-s.json:1:48 (lights): "lights" must be a list, not an object"#,
+s.json:1:48 (lights): "lights" must be a list, not an object: write [ before it and ] after it"#,
     ),
     (
         r#"{ "lights": [ { "strength": 2 }, { "softness": 100 ], "camera": { "zoom": 0 } }"#,
@@ -220,7 +220,7 @@ s.json:1:38 (camera.fov): "fov" is 300, but must lie in 1 to 150 degrees"#,
     (
         r#"{ "camera": [ "fov": 300, "zoom": 0 ], "lights": {} }"#,
         r#"s.json:1:20: a list holds no keys: put its keys and values between { and }
-s.json:1:50 (lights): "lights" must be a list, not an object"#,
+s.json:1:50 (lights): "lights" must be a list, not an object: write [ before it and ] after it"#,
     ),
     (
         r#"{ "camera": {} } {}"#,
@@ -259,8 +259,8 @@ s.json:1:42 (camera.zoom): "zoom" is 0, but must lie in 0.01 to 1000"#,
     ),
     (
         r#"{ "camera": { "fov": 30°, "zoom": 50% } }"#,
-        r"s.json:1:22: numbers are written like 12, -0.5 or 1e-3
-s.json:1:35: numbers are written like 12, -0.5 or 1e-3",
+        r"s.json:1:22: write 30 instead of 30°
+s.json:1:35: write 0.5 instead of 50%",
     ),
     (
         r#"{ "geometry": { "bond_radius": 0.14A, "scale": 0 } }"#,
@@ -399,7 +399,7 @@ s.json:1:54: numbers are written like 12, -0.5 or 1e-3",
     (
         r#"{ "camera": { "fov": '30' } }"#,
         r#"s.json:1:22: a text stands in straight double quotes: write "30"
-s.json:1:22 (camera.fov): "fov" must be a number, not the text "30""#,
+s.json:1:22 (camera.fov): "fov" must be a number, not the text "30": write 30"#,
     ),
     (
         r#"{ "camera": { "zoom": 0 } }
@@ -417,7 +417,7 @@ s.json:1:36 (camera.zoom): "zoom" is 0, but must lie in 0.01 to 1000"#,
         r#""camera": { "zoom": 0 }, "lights": {}"#,
         r#"s.json:1:1: a style stands in { and }: write { at its start and } at its end
 s.json:1:21 (camera.zoom): "zoom" is 0, but must lie in 0.01 to 1000
-s.json:1:36 (lights): "lights" must be a list, not an object"#,
+s.json:1:36 (lights): "lights" must be a list, not an object: write [ before it and ] after it"#,
     ),
     (
         ",",
@@ -441,7 +441,7 @@ s.json:1:36 (lights): "lights" must be a list, not an object"#,
     ),
     (
         "{ \"camera\": { \"fov\": 30, \"fov\": 0, \u{1} \"zoom\": 0 } }",
-        r#"s.json:1:26 (camera.fov): duplicate key "fov": it is already at 1:15
+        r#"s.json:1:26 (camera.fov): duplicate key "fov": it is already at 1:15; keep one of them
 s.json:1:33 (camera.fov): "fov" is 0, but must lie in 1 to 150 degrees
 s.json:1:36: the invisible character U+0001 has no place here: write a plain space
 s.json:1:46 (camera.zoom): "zoom" is 0, but must lie in 0.01 to 1000"#,
@@ -459,7 +459,7 @@ s.json:1:32 (mapping.atm): selector "atm": there is no type "atm"; did you mean 
     (
         r#"{ "camera": { "fov": }, "lights": {}"#,
         r#"s.json:1:15: "fov" has no value: write one after the colon
-s.json:1:35 (lights): "lights" must be a list, not an object
+s.json:1:35 (lights): "lights" must be a list, not an object: write [ before it and ] after it
 s.json:1:36: the file ends, but the { at 1:1 is not closed: write } at its end"#,
     ),
     (
@@ -558,7 +558,7 @@ s.json:1:25: the file ends, but the { at 1:1 is not closed: write } at its end"#
     ),
     (
         r#"{ "camera": { "bgcolor": "rgb(1,2,3)" } }"#,
-        r##"s.json:1:26 (camera.bgcolor): "bgcolor" is the text "rgb(1,2,3)", which is no colour: write [r, g, b] or [r, g, b, a] in 0 to 255, "#rrggbb" or a CSS name"##,
+        r##"s.json:1:26 (camera.bgcolor): "bgcolor" is the text "rgb(1,2,3)", which is no colour: write [r, g, b] or [r, g, b, a] in 0 to 255, "#rrggbb" or a CSS name; did you mean "#010203"?"##,
     ),
     (
         r#"{ "camera": { "orient": principal, "zoom": 0 } }"#,
