@@ -368,6 +368,14 @@ pub enum Notice {
         /// The nearest names that the scene has.
         hint: Hint,
     },
+    /// A colour in bytes with the numbers of one in shares.
+    #[error("{} is nearly black: numbers of a colour go to 255; write {meant} if shares of 1 were meant", quote(.name))]
+    NearlyBlack {
+        /// The key.
+        name: String,
+        /// The colour that was meant, in bytes.
+        meant: String,
+    },
     /// A shader of the file that no rule names.
     #[error("shader {} draws nothing: name it in mapping, or remove it", quote(.name))]
     UnusedShader {
@@ -432,6 +440,7 @@ impl Notice {
             Self::PropertyNotDrawn { .. } => "property_not_drawn",
             Self::TypeNotDrawn { .. } => "type_not_drawn",
             Self::MatchesNothing { .. } => "matches_nothing",
+            Self::NearlyBlack { .. } => "nearly_black",
             Self::UnusedShader { .. } => "unused_shader",
             Self::UnusedEffect { .. } => "unused_effect",
             Self::NeverDecides { .. } => "never_decides",

@@ -114,7 +114,12 @@ impl<'a> Reader<'a> {
     pub(super) fn set(&mut self, values: &mut Values, index: usize, node: &Node) {
         let param = &values.params()[index];
         match read(param, node, !self.mistakes.is_full()) {
-            Ok(value) => values.set(index, value, self.texts.place(node.span)),
+            Ok(value) => {
+                if let Some(meant) = color_of_shares(&value, node) {
+                    self.warn(self.texts.place(node.span), Notice::NearlyBlack { name: param.name.to_owned(), meant });
+                }
+                values.set(index, value, self.texts.place(node.span));
+            }
             Err((span, problem)) => self.wrong(span, problem),
         }
         if !param.drawn {
@@ -358,6 +363,21 @@ fn color(param: &Param, other_words: &[&'static str], node: &Node, with_hints: b
         }
         _ => Err((node.span, bad(Hint::NONE))),
     }
+}
+
+/// The colour in bytes that was meant by numbers between 0 and 1, as other programs take them; none where bytes can be
+/// meant.
+fn color_of_shares(value: &Value, node: &Node) -> Option<String> {
+    let (Value::Color(_) | Value::BaseColor(BaseColor::Color(_)), Tree::List(items)) = (value, &node.value) else {
+        return None;
+    };
+    let numbers = items.iter().map(|item| match item.value {
+        Tree::Number(n) if (0.0..=1.0).contains(&n) => Some(n),
+        _ => None,
+    });
+    let numbers: Vec<f64> = numbers.collect::<Option<_>>()?;
+    let bytes: Vec<String> = numbers.iter().map(|n| (n * 255.0).round().to_string()).collect();
+    numbers.iter().any(|n| n.fract() != 0.0).then(|| format!("[{}]", bytes.join(", ")))
 }
 
 /// [Prost2016, Table 1] nests its one list of `layers` in another.

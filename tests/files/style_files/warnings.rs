@@ -26,6 +26,15 @@ fn scene(xyz: &str) -> Scene {
 }
 
 #[test]
+fn a_colour_in_shares_of_one_is_nearly_black() {
+    let meant = r#"s.json:1:26 (camera.bgcolor): warning: "bgcolor" is nearly black: numbers of a colour go to 255; write [255, 128, 51] if shares of 1 were meant"#;
+    assert_eq!(warnings(r#"{ "camera": { "bgcolor": [1.0, 0.5, 0.2] } }"#), [meant]);
+    for color in ["[0, 0, 0]", "[1, 1, 1]", "[0, 1, 2.5]", "[0.5, 128, 0]", "\"#010101\""] {
+        assert_eq!(warnings(&format!("{{ \"camera\": {{ \"bgcolor\": {color} }} }}")), Vec::<String>::new(), "{color}");
+    }
+}
+
+#[test]
 fn what_nothing_names_is_unused() {
     let text = r#"{ "shaders": [{ "name": "a", "shader": "toon" }, { "name": "b", "shader": "toon" },
         { "name": "ao", "shader": "ssaoPost" }, { "name": "basic", "shader": "toon" }], "mapping": { "atom": "b" } }"#;
