@@ -23,7 +23,8 @@ install() { # PACKAGE...
 }
 
 step "set-up"
-if ! ls /usr/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json >/dev/null 2>&1; then
+has() { compgen -G "$1" >/dev/null; }
+if ! has '/usr/share/vulkan/icd.d/*.json' && ! has '/etc/vulkan/icd.d/*.json'; then
   echo "no Vulkan driver: installing the software driver (mesa-vulkan-drivers)"
   install mesa-vulkan-drivers
 fi
