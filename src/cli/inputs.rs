@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::{Failure, messages, print_message, tell};
-use crate::config::{self, Catalog, Files, Hint, Loader, Mistakes, Place, Problem, Source, Style, Unreadable};
+use crate::config::{
+    self, Catalog, Files, Hint, Loader, Mistakes, Place, Problem, Source, SourceTexts, Style, Unreadable,
+};
 use crate::engine;
 use crate::scene::{LoadOptions, ModelChoice, Scene, SceneError};
 use crate::shipped::{self, Shipped};
@@ -182,9 +184,10 @@ pub(crate) fn print_warnings(style: &Style, scene: &Scene, scene_name: &str) {
     scene_warnings(scene, scene_name).into_iter().for_each(tell);
 }
 
-/// What a style asks for and does not get, each with its source line, clean.
+/// What a style asks for and does not get, clean, each with its source line where there is a file to mend.
 pub(crate) fn style_warnings(style: &Style) -> Vec<String> {
-    messages::of_warnings(&style.warnings, style.unlisted_warnings, &style.texts)
+    let texts = if style.files.is_empty() { &SourceTexts::default() } else { &style.texts };
+    messages::of_warnings(&style.warnings, style.unlisted_warnings, texts)
 }
 
 /// What a scene's file had mended, one line a kind.

@@ -53,7 +53,8 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
                     noticed = Some(noticed.map_or(times.noticed, |earlier| earlier.min(times.noticed)));
                 }
                 Reload::Mended(part) => {
-                    tell(format!("{}: fine again; the picture is as it was", part_name(part, args)));
+                    let kept = if engine.style().is_some() { "; the picture is as it was" } else { "" };
+                    tell(format!("{}: fine again{kept}", part_name(part, args)));
                 }
                 Reload::Refused(part, refusal) => {
                     match &refusal {

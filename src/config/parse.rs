@@ -348,17 +348,9 @@ impl Parser<'_> {
                 break (range.start, false);
             }
             comma_due = match token {
-                Token::End => {
-                    self.tell_unclosed();
-                    break (self.last.end, false);
-                }
-                Token::Close(bracket) => match self.close(bracket, &range) {
-                    Closing::Here => break (range.end, true),
-                    Closing::Above => {
-                        self.put_back(token, range.clone());
-                        break (range.start, false);
-                    }
-                    Closing::Extra => comma_due,
+                Token::End | Token::Close(_) => match self.end_of_container(token, &range) {
+                    Some(end) => break end,
+                    None => comma_due,
                 },
                 Token::Comma | Token::Semicolon => {
                     self.separator(&token, range, comma_due, is_first);
@@ -556,6 +548,23 @@ impl Parser<'_> {
         }
     }
 
+    /// Where the list or object ends that is being read, and whether it is closed, at a closing bracket or the end of the
+    /// text; none where the bracket is one too many.
+    fn end_of_container(&mut self, token: Token, range: &Range<usize>) -> Option<(usize, bool)> {
+        let Token::Close(bracket) = token else {
+            self.tell_unclosed();
+            return Some((self.last.end, false));
+        };
+        match self.close(bracket, range) {
+            Closing::Here => Some((range.end, true)),
+            Closing::Above => {
+                self.put_back(token, range.clone());
+                Some((range.start, false))
+            }
+            Closing::Extra => None,
+        }
+    }
+
     /// The items of a list whose bracket is open, after those that are there already.
     fn list(&mut self, start: usize, mut items: Vec<Node>) -> Node {
         let mut comma_due = false;
@@ -563,17 +572,9 @@ impl Parser<'_> {
         let (end, is_closed) = loop {
             let (token, range) = self.take(Due::Value);
             comma_due = match token {
-                Token::End => {
-                    self.tell_unclosed();
-                    break (self.last.end, false);
-                }
-                Token::Close(bracket) => match self.close(bracket, &range) {
-                    Closing::Here => break (range.end, true),
-                    Closing::Above => {
-                        self.put_back(token, range.clone());
-                        break (range.start, false);
-                    }
-                    Closing::Extra => comma_due,
+                Token::End | Token::Close(_) => match self.end_of_container(token, &range) {
+                    Some(end) => break end,
+                    None => comma_due,
                 },
                 Token::Comma if !comma_due && self.lacks_close() => {
                     self.tell_missing_close(&range, "comma");

@@ -255,27 +255,12 @@ mod tests {
 
     #[test]
     fn a_neighbour_is_the_first_other_bond_of_either_atom() {
-        use crate::scene::{Element, FileBond, MoleculeBuilder, Name, NewAtom, Report};
-        let mut builder = MoleculeBuilder::default();
-        for i in 0..12 {
-            builder.push(&NewAtom {
-                position: glam::DVec3::new(f64::from(i % 4) * 2.5, f64::from(i / 4) * 2.5, 0.0),
-                element: Element::CARBON,
-                name: Name::default(),
-                alt_loc: 0,
-                occupancy: 1.0,
-                residue_name: Name::default(),
-                residue_number: 0,
-                insertion_code: 0,
-                is_hetero: false,
-                chain: b"",
-                model: 1,
-            });
-        }
-        let pairs = [(0, 1), (0, 4), (4, 5), (1, 5), (5, 9), (4, 8), (2, 3)];
-        let bonds = pairs.map(|(a, b)| FileBond { a, b, order: 2 });
-        let molecule = builder.finish(&bonds, &mut Report::default()).expect("twelve atoms");
-        assert_eq!(molecule.bonds.len(), bonds.len());
+        let atoms: String = (0..12).map(|i| format!("C {} {} 0\n", i % 4 * 3, i / 4 * 3)).collect();
+        let scene = crate::scene::Scene::from_bytes("grid.xyz", format!("12\n\n{atoms}").as_bytes());
+        let mut molecule = scene.expect("twelve atoms").molecule;
+        assert!(molecule.bonds.is_empty(), "they lie apart");
+        let pairs = [(0, 1), (0, 4), (1, 5), (2, 3), (4, 5), (4, 8), (5, 9)];
+        molecule.bonds = pairs.map(|(a, b)| Bond { a, b, order: 2 }).to_vec();
         let neighbours = Neighbours::new(&molecule, true);
         for bond in &molecule.bonds {
             let position = |index: u32| molecule.atoms[index as usize].position;

@@ -252,10 +252,11 @@ impl Engine {
 
     fn reload_shaders(&mut self, live: &mut Live) -> Result<Option<(Instant, Instant)>, Refusal> {
         let Some(folder) = &live.sources.shader_folder else { return Ok(None) };
-        let files = shader_files(folder);
-        let edits: ShaderEdits = files.iter().filter_map(|file| text_of(folder, file)).collect();
-        live.watch.set(Part::Shaders, files);
         let former = self.gpu.shader_edits();
+        // A file that is away is mostly half of a save: its text stays, and its return is waited for.
+        let mut edits = ShaderEdits::clone(&former);
+        edits.extend(shader_files(folder).iter().filter_map(|file| text_of(folder, file)));
+        live.watch.set(Part::Shaders, edits.keys().map(|path| folder.join(path)));
         // Before the first frame no pipeline is there that could be built anew.
         if *former == edits || former.is_empty() {
             self.gpu.set_shader_edits(Arc::new(edits));

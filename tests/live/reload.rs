@@ -300,4 +300,14 @@ fn shaders_of_a_source_tree_are_followed() {
     live.write("shaders/objects/unlit.wgsl", &good);
     assert_eq!(live.taken(), Part::Shaders);
     assert_eq!(middle(&mut live), [0, 255, 0]);
+    // A save that keeps a backup: the file is away for a while, and the picture stays.
+    live.write("shaders/objects/unlit.wgsl", &good.replace("return s.base_color;", "return s.base_color.yxz;"));
+    assert_eq!(live.taken(), Part::Shaders);
+    let own = live.path("shaders/objects/unlit.wgsl");
+    fs::rename(&own, live.path("shaders/objects/unlit.wgsl~")).unwrap();
+    live.silent();
+    assert_eq!(middle(&mut live), [255, 0, 0]);
+    live.write("shaders/objects/unlit.wgsl", &good);
+    assert_eq!(live.taken(), Part::Shaders);
+    assert_eq!(middle(&mut live), [0, 255, 0]);
 }
