@@ -7,7 +7,7 @@ use super::messages::{self, clean};
 use super::{Failure, answer, inputs, print_message, tell};
 use crate::config::{Hint, MOST_LISTED, Mistakes, Place, SourceTexts, Style, Warning, explain};
 use crate::engine::lint;
-use crate::scene::{LoadOptions, ModelChoice, Scene};
+use crate::scene::{LoadOptions, Scene};
 
 /// The end of the help: what a tool can rely on.
 const JSON_HELP: &str = "\
@@ -66,10 +66,10 @@ struct Findings {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let options = LoadOptions { model: ModelChoice::First };
+    let options = LoadOptions::default();
     let scene = match &args.scene {
         Some(name) => {
-            let scene = inputs::load_scene(name, options)?.scene;
+            let scene = inputs::load_scene(name, &options)?.scene;
             inputs::scene_warnings(&scene, name).into_iter().for_each(tell);
             Some(scene)
         }

@@ -12,7 +12,7 @@ use super::render::{cannot_write, progress_bar};
 use super::{Failure, answer, print_message};
 use crate::config::Style;
 use crate::engine::{Engine, Gpu, Request};
-use crate::scene::{LoadOptions, ModelChoice, Scene, write_whole};
+use crate::scene::{LoadOptions, Scene, write_whole};
 use crate::shipped::{LOOKS, MOLECULES};
 
 #[derive(Debug, clap::Args)]
@@ -49,7 +49,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let style_names = or_all(&args.style, LOOKS);
 
     // All that can be wrong with the input is found before anything is written.
-    let options = LoadOptions { model: ModelChoice::First };
+    let options = LoadOptions::default();
     let mut styles: Vec<Named<Style>> = Vec::new();
     for name in &style_names {
         let stem = free_stem(name, styles.iter().map(|style| style.stem.as_str()));
@@ -60,7 +60,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let mut told: Vec<String> = Vec::new();
     for name in &scene_names {
         let stem = free_stem(name, scenes.iter().map(|scene| scene.stem.as_str()));
-        let scene = inputs::load_scene(name, options)?.scene;
+        let scene = inputs::load_scene(name, &options)?.scene;
         told.extend(inputs::scene_warnings(&scene, name).into_iter().map(clean));
         scenes.push(Named { label: stem.replace('_', " "), stem, value: scene });
     }

@@ -8,7 +8,7 @@ use crate::config::{
     self, Catalog, Files, Hint, Loader, Mistakes, Place, Problem, Source, SourceTexts, Style, Unreadable,
 };
 use crate::engine;
-use crate::scene::{LoadOptions, ModelChoice, Scene, SceneError};
+use crate::scene::{LoadOptions, ModelChoice, Scene, SceneError, SceneFile};
 use crate::shipped::{self, Shipped};
 
 /// A picture size written as `WxH`.
@@ -82,10 +82,10 @@ pub(crate) fn find_style(name: &str) -> Result<Input, Failure> {
 }
 
 /// Reads a scene.
-pub(crate) fn read_scene(input: &Input, options: LoadOptions) -> Result<Scene, SceneError> {
+pub(crate) fn read_scene(input: &Input, options: &LoadOptions) -> Result<Scene, SceneError> {
     match input {
-        Input::Shipped(molecule) => Scene::from_bytes_with(molecule.file, molecule.bytes, &options),
-        Input::File(path) => Scene::load_with(path, &options),
+        Input::Shipped(molecule) => Scene::from_bytes_with(molecule.file, molecule.bytes, options),
+        Input::File(path) => Scene::load_with(path, options),
     }
 }
 
@@ -119,7 +119,7 @@ pub(crate) fn follow_style(input: &Input) -> Result<Style, Mistakes> {
 }
 
 /// Reads a scene, again and again.
-pub(crate) fn follow_scene(input: &Input, options: LoadOptions) -> Result<Scene, SceneError> {
+pub(crate) fn follow_scene(input: &Input, options: &LoadOptions) -> Result<Scene, SceneError> {
     match no_file_to_follow(input) {
         Some((path, reason)) => {
             Err(SceneError::Unsupported { file: path.display().to_string(), what: reason.to_owned() })
@@ -129,7 +129,7 @@ pub(crate) fn follow_scene(input: &Input, options: LoadOptions) -> Result<Scene,
 }
 
 /// Loads a file, or a shipped molecule by its name.
-pub(crate) fn load_scene(name: &str, options: LoadOptions) -> Result<Loaded, Failure> {
+pub(crate) fn load_scene(name: &str, options: &LoadOptions) -> Result<Loaded, Failure> {
     let start = Instant::now();
     let scene = read_scene(&find_scene(name)?, options).map_err(Failure::input)?;
     Ok(Loaded { scene, ms: start.elapsed().as_secs_f64() * 1e3 })
@@ -192,7 +192,13 @@ pub(crate) fn style_warnings(style: &Style) -> Vec<String> {
 
 /// What a scene's file had mended, one line a kind.
 pub(crate) fn scene_warnings(scene: &Scene, scene_name: &str) -> Vec<String> {
-    scene.report.to_string().lines().map(|line| format!("{scene_name}: warning: {line}")).collect()
+    let of_file = |file: &SceneFile| {
+        let name = if scene.files.len() == 1 { scene_name } else { &file.name };
+        let lines: Vec<String> =
+            file.report.to_string().lines().map(|line| format!("{name}: warning: {line}")).collect();
+        lines
+    };
+    scene.files.iter().flat_map(of_file).collect()
 }
 
 /// A look or molecule that is not shipped, with those that are.

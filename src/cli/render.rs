@@ -69,7 +69,7 @@ impl Args {
 
     /// How the scene is read.
     pub(super) fn load_options(&self) -> LoadOptions {
-        LoadOptions { model: self.model.unwrap_or(ModelChoice::First) }
+        LoadOptions { model: self.model.unwrap_or(ModelChoice::First), assembly: None }
     }
 
     /// The files to write.
@@ -114,7 +114,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             (Gpu::open(), start.elapsed().as_secs_f64() * 1e3)
         });
         let style: Result<Style, Failure> = inputs::load_style(&args.style);
-        let loaded: Result<Loaded, Failure> = inputs::load_scene(&args.scene, options);
+        let loaded: Result<Loaded, Failure> = inputs::load_scene(&args.scene, &options);
         (gpu.join(), loaded, style)
     });
     let (style, loaded) = (style?, loaded?);

@@ -39,7 +39,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         style_file: style.file().map(Path::to_owned),
         style: Box::new(move || inputs::follow_style(&style)),
         scene_file: scene.file().map(Path::to_owned),
-        scene: Box::new(move || inputs::follow_scene(&scene, options)),
+        scene: Box::new(move || inputs::follow_scene(&scene, &options)),
         shader_folder: source_tree_shaders(),
     };
     let mut engine = Engine::live(Arc::new(Gpu::open()?), sources);

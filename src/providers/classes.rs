@@ -63,7 +63,13 @@ impl AtomClasses {
             })
             .collect();
         let of_bond = molecule.bonds.iter().map(|bond| [bond.a, bond.b].map(|atom| of_atom[atom as usize])).collect();
-        let values = [elements.texts, names.texts, residues.texts, molecule.chains.clone(), models.texts];
+        let values = [
+            elements.texts,
+            names.texts,
+            residues.texts,
+            molecule.chains.iter().map(|chain| chain.id.clone()).collect(),
+            models.texts,
+        ];
         AtomClasses { of_atom, of_bond, classes, values }
     }
 

@@ -5,12 +5,14 @@
 use super::altloc;
 use super::bonds::{self, FileBond};
 use super::element::Element;
-use super::molecule::{Atom, Molecule, Residue};
+use super::guess;
+use super::molecule::{Atom, Chain, Molecule, MoleculeCopy, Residue, ResidueKind, Sphere};
 use super::name::Name;
 use super::report::{NoteKind, Report};
 use super::sphere::bounding_sphere;
-use glam::{DVec3, Vec3};
+use glam::{Affine3A, DAffine3, DVec3, Vec3};
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// Above this rounding step of f32 positions, in angstrom, the report says so; a tenth of a pixel in any close view.
 const VISIBLE_ROUNDING: f64 = 0.005;
@@ -40,6 +42,19 @@ pub struct NewAtom<'a> {
     pub chain: &'a [u8],
     /// Model number; must not fall from one atom to the next.
     pub model: u32,
+    /// Temperature factor in square angstrom, or 0.
+    pub b_factor: f32,
+    /// Charge in elementary charges, or 0.
+    pub charge: f32,
+}
+
+/// A copy of some atoms, as a biological assembly has them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NewCopy {
+    /// Ascending ranges of indices that [`MoleculeBuilder::push`] returned.
+    pub atoms: Vec<Range<u32>>,
+    /// From the file's coordinates to where the copy stands; rotation and translation.
+    pub place: DAffine3,
 }
 
 /// Atoms in the order of the file, with the groups they belong to.
@@ -49,7 +64,8 @@ pub struct MoleculeBuilder {
     atoms: Vec<Atom>,
     occupancies: Vec<f32>,
     residues: Vec<Residue>,
-    chains: Vec<String>,
+    chains: Vec<Chain>,
+    copies: Vec<NewCopy>,
     chain_index: HashMap<Vec<u8>, u32>,
     last_chain: Option<(Vec<u8>, u32)>,
     has_alt_locs: bool,
@@ -75,6 +91,7 @@ impl MoleculeBuilder {
             name: atom.residue_name,
             insertion_code: atom.insertion_code,
             is_hetero: atom.is_hetero,
+            kind: ResidueKind::default(),
         };
         if self.residues.last().is_none_or(|last| !same_residue(last, &residue)) {
             self.residues.push(residue);
@@ -89,15 +106,23 @@ impl MoleculeBuilder {
             name: atom.name,
             element: atom.element,
             alt_loc: atom.alt_loc,
+            b_factor: atom.b_factor,
+            charge: atom.charge,
         });
         index
+    }
+
+    /// Draws these copies instead of the atoms as they are; atoms that no copy names are not drawn.
+    pub fn set_copies(&mut self, copies: Vec<NewCopy>) {
+        self.copies = copies;
     }
 
     /// Makes the molecule, or `None` if there is no atom. `file_bonds` may hold duplicates and any direction.
     pub fn finish(mut self, file_bonds: &[FileBond], report: &mut Report) -> Option<Molecule> {
         let new_index = self.drop_alternates(report);
-        let bounds = self.positions.iter().map(|&p| (p, p)).reduce(|(low, high), (p, _)| (low.min(p), high.max(p)));
-        let (low, high) = bounds?;
+        let copies = std::mem::take(&mut self.copies);
+        let copies: Vec<NewCopy> = copies.into_iter().map(|copy| kept(copy, new_index.as_deref())).collect();
+        let (low, high) = self.bounds(&copies)?;
         let origin = (low + high) * 0.5;
         for (atom, &position) in self.atoms.iter_mut().zip(&self.positions) {
             atom.position = (position - origin).as_vec3();
@@ -107,7 +132,9 @@ impl MoleculeBuilder {
             report.note(NoteKind::CoarsePositions, None, || format!("to about {rounding:.2e} angstrom"));
         }
         // Give back what growing the lists left over before the bond search takes memory.
-        drop((self.positions, self.occupancies, self.chain_index));
+        drop((std::mem::take(&mut self.positions), std::mem::take(&mut self.occupancies)));
+        self.chain_index = HashMap::new();
+        self.classify_residues();
         self.atoms.shrink_to_fit();
         self.residues.shrink_to_fit();
         let kept_bond = |bond: &FileBond| {
@@ -118,8 +145,49 @@ impl MoleculeBuilder {
         };
         let file_bonds: Vec<FileBond> = file_bonds.iter().filter_map(kept_bond).collect();
         let bonds = bonds::find(&self.atoms, &self.residues, &file_bonds, report);
-        let sphere = bounding_sphere(self.atoms.iter().map(|atom| (atom.position, atom.element.vdw_radius())));
-        Some(Molecule { atoms: self.atoms, residues: self.residues, chains: self.chains, bonds, origin, sphere })
+        let copies = copies.into_iter().map(|copy| MoleculeCopy {
+            atoms: copy.atoms,
+            world_from_molecule: single(
+                DAffine3::from_translation(-origin) * copy.place * DAffine3::from_translation(origin),
+            ),
+        });
+        let mut molecule = Molecule {
+            atoms: self.atoms,
+            residues: self.residues,
+            chains: self.chains,
+            bonds,
+            copies: copies.collect(),
+            origin,
+            sphere: Sphere::default(),
+        };
+        molecule.sphere = bounding_sphere(molecule.drawn_balls());
+        Some(molecule)
+    }
+
+    /// Tells what each residue is: by name, and by whether it is a single atom.
+    fn classify_residues(&mut self) {
+        let mut first = 0;
+        for (index, residue) in self.residues.iter_mut().enumerate() {
+            let count = self.atoms[first..].iter().take_while(|atom| atom.residue as usize == index).count();
+            let element = self.atoms.get(first).map_or(Element::UNKNOWN, |atom| atom.element);
+            residue.kind = guess::residue_kind(residue.name.as_str(), (count == 1).then_some(element));
+            first += count;
+        }
+    }
+
+    /// The box around all that is drawn, in the file's coordinates; none where that is nothing.
+    fn bounds(&self, copies: &[NewCopy]) -> Option<(DVec3, DVec3)> {
+        let grow = |(low, high): (DVec3, DVec3), p: DVec3| (low.min(p), high.max(p));
+        let nothing = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let (low, high) = if copies.is_empty() {
+            self.positions.iter().fold(nothing, |bounds, &p| grow(bounds, p))
+        } else {
+            copies.iter().fold(nothing, |bounds, copy| {
+                let atoms = copy.atoms.iter().flat_map(|range| &self.positions[as_usize(range)]);
+                atoms.fold(bounds, |bounds, &p| grow(bounds, copy.place.transform_point3(p)))
+            })
+        };
+        (low.x <= high.x).then_some((low, high))
     }
 
     /// Drops all but one alternate location and the residues left without atoms; returns where each atom went, if any moved.
@@ -163,7 +231,7 @@ impl MoleculeBuilder {
             Some(&index) => index,
             None => {
                 let index = self.chains.len() as u32;
-                self.chains.push(String::from_utf8_lossy(id).into_owned());
+                self.chains.push(Chain { id: String::from_utf8_lossy(id).into_owned(), file: 0 });
                 self.chain_index.insert(id.to_vec(), index);
                 index
             }
@@ -171,6 +239,27 @@ impl MoleculeBuilder {
         self.last_chain = Some((id.to_vec(), index));
         index
     }
+}
+
+/// A copy with the indices that its atoms have after some were dropped.
+fn kept(copy: NewCopy, new_index: Option<&[Option<u32>]>) -> NewCopy {
+    let Some(new_index) = new_index else { return copy };
+    let moved = |range: &Range<u32>| {
+        let mut kept = new_index.get(as_usize(range)).unwrap_or_default().iter().flatten();
+        let first = *kept.next()?;
+        Some(first..kept.next_back().copied().unwrap_or(first) + 1)
+    };
+    NewCopy { atoms: copy.atoms.iter().filter_map(moved).collect(), place: copy.place }
+}
+
+fn as_usize(range: &Range<u32>) -> Range<usize> {
+    range.start as usize..range.end as usize
+}
+
+/// A placement in single precision.
+pub(super) fn single(place: DAffine3) -> Affine3A {
+    let [x, y, z] = [place.matrix3.x_axis, place.matrix3.y_axis, place.matrix3.z_axis].map(|axis| axis.as_vec3());
+    Affine3A::from_mat3_translation(glam::Mat3::from_cols(x, y, z), place.translation.as_vec3())
 }
 
 /// Whether two neighbours in the file belong together; a `HETATM` within a residue does not split it.
@@ -196,6 +285,8 @@ pub(super) mod tests {
             is_hetero: false,
             chain: b"",
             model: 1,
+            b_factor: 0.0,
+            charge: 0.0,
         }
     }
 
@@ -239,7 +330,8 @@ pub(super) mod tests {
         (atoms[0].chain, atoms[1].chain, atoms[2].chain, atoms[3].chain) = (b"A", b"B", b"A", b"A");
         atoms[3].is_hetero = true;
         let molecule = build(&atoms);
-        assert_eq!(molecule.chains, ["A", "B"]);
+        let chains: Vec<&str> = molecule.chains.iter().map(|chain| chain.id.as_str()).collect();
+        assert_eq!(chains, ["A", "B"]);
         assert_eq!(molecule.residues.len(), 3);
         assert_eq!(molecule.chain(&molecule.atoms[2]), "A");
         assert!(!molecule.residue(&molecule.atoms[3]).is_hetero);

@@ -46,6 +46,12 @@ pub enum SceneError {
         /// What was looked for, and what to do.
         hint: String,
     },
+    /// The format is right, but there is no triangle in the file.
+    #[error("{file}: holds no triangles; export the model's surfaces, or as a mesh")]
+    NoTriangles {
+        /// The file as the caller named it.
+        file: String,
+    },
     /// A line contradicts the format so that nothing can be drawn safely.
     #[error("{file}:{line}: {what}")]
     Malformed {

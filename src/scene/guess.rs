@@ -5,6 +5,7 @@
 //! residue has a say too. XYZ files write symbols, labels (`C1`) or atomic numbers.
 
 use super::element::Element;
+use super::molecule::ResidueKind;
 
 /// Two-letter elements that a name may start with when the columns say so; others (`HE`, `CE`, `AC`) are nearly always labels.
 const LIKELY_TWO_LETTER: &[&[u8; 2]] = &[
@@ -28,6 +29,21 @@ const WATER: &[&str] =
 pub(super) fn is_polymer_residue(name: &str) -> bool {
     POLYMER.contains(&name)
 }
+
+/// What a residue is, by its name; `only` is the element of its atom where it has just one.
+pub(super) fn residue_kind(name: &str, only: Option<Element>) -> ResidueKind {
+    match name {
+        _ if is_water(name) => ResidueKind::Water,
+        _ if is_polymer_residue(name) && name.len() == 3 && !NUCLEIC_OF_THREE.contains(&name) => ResidueKind::Protein,
+        _ if is_polymer_residue(name) => ResidueKind::Nucleic,
+        "" => ResidueKind::Other,
+        _ if only.is_some_and(Element::is_known) => ResidueKind::Ion,
+        _ => ResidueKind::Ligand,
+    }
+}
+
+/// Nucleotides by the three letters of simulation programs; all others have one or two.
+const NUCLEIC_OF_THREE: &[&str] = &["ADE", "CYT", "GUA", "THY", "URA"];
 
 /// Whether a residue is a water molecule.
 pub(super) fn is_water(name: &str) -> bool {

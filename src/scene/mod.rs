@@ -1,12 +1,14 @@
 //! Scenes: what a style is applied to. No GPU and no JSON in here.
 //!
-//! [`Scene::load`] reads a molecule file (PDB or XYZ), mends what it can, and says in [`Scene::report`] what it mended,
-//! guessed or skipped. What it cannot mend is a [`SceneError`] with file, line and a way out.
+//! [`Scene::load`] reads a file of molecules or meshes, mends what it can, and says in the [`Report`] of each of
+//! [`Scene::files`] what it mended, guessed or skipped. What it cannot mend is a [`SceneError`] with file, line and a way
+//! out. [`Scene::join`] puts the scenes of several files into one.
 //!
 //! ```text
 //! import/{sniff, pdb, conect, xyz}  ->  builder  ->  { altloc, bonds -> grid, sphere }  ->  molecule
+//! import/...  ->  mesh/raw  ->  mesh/build  ->  mesh/assembly
 //! ```
-//! A new format is one file in `import/` that feeds a [`MoleculeBuilder`], and a line in `import/mod.rs`.
+//! A new format is one file in `import/` that feeds a [`MoleculeBuilder`] or a [`RawMesh`], and a line in `import/mod.rs`.
 
 mod altloc;
 mod aov;
@@ -22,7 +24,9 @@ mod grid;
 pub mod guess;
 mod image;
 pub mod import;
+mod join;
 mod light;
+pub mod mesh;
 mod molecule;
 mod name;
 mod report;
@@ -30,34 +34,51 @@ mod sphere;
 
 pub use aov::{AovImage, AovName};
 pub use bonds::FileBond;
-pub use builder::{MoleculeBuilder, NewAtom};
+pub use builder::{MoleculeBuilder, NewAtom, NewCopy};
 pub use camera::Camera;
 pub use element::{Element, ElementInfo};
 pub use error::SceneError;
 pub use image::{Image, Pixels, write_whole};
 pub use import::{LoadOptions, ModelChoice};
 pub use light::{Light, LightPlace, Lighting, Shadow};
-pub use molecule::{Atom, Bond, Molecule, Residue, Sphere};
+pub use mesh::{Assembly, MeshMaterial, Part, RawMesh, Shape};
+pub use molecule::{Atom, Bond, Chain, Molecule, MoleculeCopy, Residue, ResidueKind, Sphere};
 pub use name::Name;
 pub use report::{Note, NoteKind, Report};
 pub use sphere::bounding_sphere;
 
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The largest file that is read, in MiB: 20 times the largest entry that the PDB keeps in its old format.
 const MAX_FILE_MIB: u64 = 2048;
 
-/// A molecule as a file gives it, ready to be drawn.
+/// What files hold, ready to be drawn: a molecule, meshes, or both. Never empty.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// The molecule; it has at least one atom.
+    /// The atoms of all files.
     pub molecule: Molecule,
-    /// What was mended, guessed or skipped.
-    pub report: Report,
-    /// The file's name without folder and extension.
+    /// The meshes of all files.
+    pub assembly: Assembly,
+    /// The files, in the order in which they were given.
+    pub files: Vec<SceneFile>,
+    /// The first file's name without folder and extension.
     pub name: String,
+    /// File units in one scene unit: 1, but a power of two for meshes so large or small that single precision would fail.
+    pub unit: f64,
+    sphere: Sphere,
+}
+
+/// One of the files of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneFile {
+    /// Its name without folder, as selectors know it.
+    pub name: String,
+    /// What was mended, guessed or skipped in it.
+    pub report: Report,
+    /// Files beside it that it names and that were read, such as materials.
+    pub side_files: Vec<PathBuf>,
 }
 
 impl Scene {
@@ -75,7 +96,7 @@ impl Scene {
     /// Every [`SceneError`].
     pub fn load_with(path: &Path, options: &LoadOptions) -> Result<Self, SceneError> {
         let bytes = read(path)?;
-        Self::from_bytes_with(&path.to_string_lossy(), &bytes, options)
+        import::read(&path.to_string_lossy(), &bytes, options, Some(path.parent().unwrap_or(Path::new(""))))
     }
 
     /// Reads a file that is already in memory; `name` is its path, for messages and where the content does not tell the format.
@@ -91,7 +112,14 @@ impl Scene {
     /// # Errors
     /// `Empty`, `NoAtoms`, `Malformed`, `Unsupported`, `NoSuchModel`.
     pub fn from_bytes_with(name: &str, bytes: &[u8], options: &LoadOptions) -> Result<Self, SceneError> {
-        import::read(name, bytes, options)
+        import::read(name, bytes, options, None)
+    }
+}
+
+impl Scene {
+    /// A sphere around all that is loaded, hidden or not: atoms with their van der Waals radii, and vertices.
+    pub const fn bounding_sphere(&self) -> Sphere {
+        self.sphere
     }
 }
 

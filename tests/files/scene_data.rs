@@ -118,7 +118,7 @@ fn every_real_molecule_has_the_atoms_of_its_row() {
         assert_eq!(scene.molecule.atoms.len(), num_first, "{file}");
         assert_eq!(scene.molecule.bonds.len(), num_bonds, "{file}");
         if num_all != num_first {
-            let options = LoadOptions { model: ModelChoice::All };
+            let options = LoadOptions { model: ModelChoice::All, ..LoadOptions::default() };
             let all = Scene::load_with(&path, &options).unwrap_or_else(|error| panic!("{error}"));
             assert_eq!(all.molecule.atoms.len(), num_all, "{file}, all models");
         }
@@ -136,10 +136,10 @@ fn every_damaged_file_is_mended_or_refused_as_promised() {
             (Ok(scene), Outcome::Loads(num_atoms, kinds)) => {
                 assert_eq!(scene.molecule.atoms.len(), num_atoms, "{file}");
                 let noted: Vec<NoteKind> =
-                    NoteKind::ALL.iter().copied().filter(|&kind| scene.report.count(kind) > 0).collect();
+                    NoteKind::ALL.iter().copied().filter(|&kind| scene.files[0].report.count(kind) > 0).collect();
                 let mut expected = kinds.to_vec();
                 expected.sort_unstable();
-                assert_eq!(noted, expected, "{file}: {}", scene.report);
+                assert_eq!(noted, expected, "{file}: {}", scene.files[0].report);
                 let sphere = scene.molecule.bounding_sphere();
                 assert!(sphere.radius.is_finite() && sphere.center.is_finite(), "{file}");
             }
@@ -158,7 +158,7 @@ fn every_damaged_file_is_mended_or_refused_as_promised() {
 fn damaged_coordinates_are_named_with_their_lines() {
     let Some(folder) = data("bad") else { return };
     let scene = Scene::load(&folder.join("pdb_nan_stars_blank_coords.pdb"));
-    let report = scene.unwrap_or_else(|error| panic!("{error}")).report.to_string();
+    let report = scene.unwrap_or_else(|error| panic!("{error}")).files[0].report.to_string();
     assert_eq!(
         report,
         "3 atoms skipped: a coordinate is no number (line 278: x = \"nan\"; line 279: x = \"********\"; line 280: y = \"\")\n"
@@ -170,7 +170,12 @@ fn a_model_can_be_chosen() {
     let Some(folder) = data("molecules") else {
         return;
     };
-    let load = |model| Scene::load_with(&folder.join("1LVZ.pdb"), &LoadOptions { model: ModelChoice::Number(model) });
+    let load = |model| {
+        Scene::load_with(
+            &folder.join("1LVZ.pdb"),
+            &LoadOptions { model: ModelChoice::Number(model), ..LoadOptions::default() },
+        )
+    };
     let scene = load(20).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(scene.molecule.atoms.len(), 185);
     assert!(scene.molecule.residues.iter().all(|residue| residue.model == 20));

@@ -116,7 +116,7 @@ fn two_thousand_damaged_files_neither_panic_nor_break_promises() {
         let (name, original) = &files[random.below(files.len())];
         let bytes = mutate(original, &mut random);
         let model = [ModelChoice::First, ModelChoice::All, ModelChoice::Number(seed % 3)][random.below(3)];
-        match Scene::from_bytes_with(name, &bytes, &LoadOptions { model }) {
+        match Scene::from_bytes_with(name, &bytes, &LoadOptions { model, ..LoadOptions::default() }) {
             Ok(scene) => {
                 assert_sound(&scene.molecule);
                 num_loaded += 1;

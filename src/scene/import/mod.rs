@@ -1,10 +1,11 @@
-//! Importers: bytes of a file to a molecule. One file per format.
+//! Importers: bytes of a file to a molecule or a mesh. One file per format.
 
 mod conect;
 mod lines;
 mod models;
 mod number;
 mod pdb;
+mod side_file;
 mod sniff;
 mod xyz;
 
@@ -13,16 +14,19 @@ pub use sniff::{Format, sniff};
 
 use super::Scene;
 use super::error::SceneError;
+use super::mesh::{Assembly, RawMesh};
 use super::molecule::Molecule;
 use super::report::{NoteKind, Report};
 use glam::DVec3;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// What to read of a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct LoadOptions {
     /// Which models or frames.
     pub model: ModelChoice,
+    /// Which biological assembly, by its id in the file; the deposited coordinates where there is none.
+    pub assembly: Option<String>,
 }
 
 /// What importers share: the file's name for messages, the options, the notes.
@@ -30,6 +34,10 @@ struct Import<'a> {
     file: &'a str,
     options: &'a LoadOptions,
     report: Report,
+    /// Where side files may lie; none where nothing but the file itself is read.
+    folder: Option<&'a Path>,
+    /// Side files that were read.
+    side_files: Vec<PathBuf>,
 }
 
 impl Import<'_> {
@@ -65,17 +73,22 @@ impl Import<'_> {
     }
 }
 
-/// Reads a file of any format that is known.
-pub(super) fn read(file: &str, bytes: &[u8], options: &LoadOptions) -> Result<Scene, SceneError> {
+/// Reads a file of any format that is known; `folder` is where the files that it names may lie.
+pub(super) fn read(
+    file: &str,
+    bytes: &[u8],
+    options: &LoadOptions,
+    folder: Option<&Path>,
+) -> Result<Scene, SceneError> {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     if text.trim_ascii().is_empty() {
         return Err(SceneError::Empty { file: file.to_string() });
     }
     let unsupported = |what: String| Err(SceneError::Unsupported { file: file.to_string(), what });
-    let mut import = Import { file, options, report: Report::default() };
-    let molecule: Molecule = match sniff(file, bytes) {
-        Format::Pdb => pdb::read(&mut import, bytes)?,
-        Format::Xyz => xyz::read(&mut import, bytes)?,
+    let mut import = Import { file, options, report: Report::default(), folder, side_files: Vec::new() };
+    let content = match sniff(file, bytes) {
+        Format::Pdb => pdb::read(&mut import, bytes).map(Content::Molecule)?,
+        Format::Xyz => xyz::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Foreign(what) => {
             return unsupported(format!("is {what}, not a molecule in PDB or XYZ format; {}", way_out(what)));
         }
@@ -85,8 +98,22 @@ pub(super) fn read(file: &str, bytes: &[u8], options: &LoadOptions) -> Result<Sc
             );
         }
     };
-    let name = Path::new(file).file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    Ok(Scene { molecule, report: import.report, name })
+    let Import { mut report, side_files, .. } = import;
+    let (molecule, assembly) = match content {
+        Content::Molecule(molecule) => (molecule, Assembly::default()),
+        Content::Mesh(raw) => {
+            let assembly = Assembly::build(raw, 0, &mut report);
+            let assembly = assembly.ok_or_else(|| SceneError::NoTriangles { file: file.to_string() })?;
+            (Molecule::default(), assembly)
+        }
+    };
+    Ok(Scene::of_file(file, molecule, assembly, report, side_files))
+}
+
+/// What a file holds.
+enum Content {
+    Molecule(Molecule),
+    Mesh(RawMesh),
 }
 
 /// What helps with a file of another format.

@@ -208,6 +208,8 @@ fn read_atom<'a>(
         is_hetero,
         chain: chain(line),
         model,
+        b_factor: number::float(columns(line, 60, 66)).filter(|value| value.is_finite()).unwrap_or(0.0) as f32,
+        charge: 0.0,
     }))
 }
 
@@ -271,7 +273,7 @@ mod tests {
     use crate::scene::{LoadOptions, ModelChoice, NoteKind, Scene, SceneError};
 
     fn load(text: &str, model: ModelChoice) -> Result<Scene, SceneError> {
-        Scene::from_bytes_with("t.pdb", text.as_bytes(), &LoadOptions { model })
+        Scene::from_bytes_with("t.pdb", text.as_bytes(), &LoadOptions { model, ..LoadOptions::default() })
     }
 
     fn first(text: &str) -> Scene {
@@ -294,7 +296,7 @@ mod tests {
         let text = format!("{}END\n{}END\n", atom("1", 0.0), atom("1", 1.4));
         let scene = first(&text);
         assert_eq!(scene.molecule.atoms.len(), 1);
-        assert_eq!(scene.report.count(NoteKind::ModelSkipped), 1);
+        assert_eq!(scene.files[0].report.count(NoteKind::ModelSkipped), 1);
         let all = load(&text, ModelChoice::All).expect("both frames").molecule;
         assert_eq!((all.atoms.len(), all.bonds.len()), (2, 0));
         let second = load(&text, ModelChoice::Number(2)).expect("the second frame").molecule;
@@ -330,8 +332,8 @@ mod tests {
     fn segments_name_chains_that_have_no_letter() {
         let line = atom("1", 0.0).replace(" A   1", "     1");
         let with_segment = line.replace("          C\n", "     PROT C\n");
-        assert_eq!(first(&with_segment).molecule.chains, ["PROT"]);
+        assert_eq!(first(&with_segment).molecule.chains[0].id, "PROT");
         let old = line.replace("          C\n", "     1CRN  70\n");
-        assert_eq!(first(&old).molecule.chains, [""]);
+        assert_eq!(first(&old).molecule.chains[0].id, "");
     }
 }

@@ -184,6 +184,8 @@ fn read_atom(
         is_hetero: false,
         chain: b"",
         model,
+        b_factor: 0.0,
+        charge: 0.0,
     });
     Ok(())
 }
@@ -193,7 +195,7 @@ mod tests {
     use crate::scene::{LoadOptions, ModelChoice, NoteKind, Scene, SceneError};
 
     fn load(text: &str, model: ModelChoice) -> Result<Scene, SceneError> {
-        Scene::from_bytes_with("t.xyz", text.as_bytes(), &LoadOptions { model })
+        Scene::from_bytes_with("t.xyz", text.as_bytes(), &LoadOptions { model, ..LoadOptions::default() })
     }
 
     fn message(text: &str) -> String {
@@ -206,7 +208,7 @@ mod tests {
     fn the_first_of_several_frames_is_drawn() {
         let scene = load(TWO_FRAMES, ModelChoice::First).expect("a scene");
         assert_eq!(scene.molecule.atoms.len(), 1);
-        assert_eq!(scene.report.count(NoteKind::ModelSkipped), 1);
+        assert_eq!(scene.files[0].report.count(NoteKind::ModelSkipped), 1);
         let all = load(TWO_FRAMES, ModelChoice::All).expect("both").molecule;
         assert_eq!((all.atoms.len(), all.bonds.len(), all.residues.len()), (3, 1, 2));
         let second = load(TWO_FRAMES, ModelChoice::Number(2)).expect("the second").molecule;
@@ -233,7 +235,7 @@ mod tests {
         for text in ["2\nC 0 0 0\nC 1.4 0 0\n", "2\nC 0 0 0\nC 1.4 0 0\n1\n\nO 0 0 0\n"] {
             let scene = load(text, ModelChoice::First).expect("mended");
             assert_eq!(scene.molecule.atoms.len(), 2, "{text:?}");
-            assert_eq!(scene.report.count(NoteKind::CountMended), 1);
+            assert_eq!(scene.files[0].report.count(NoteKind::CountMended), 1);
         }
     }
 

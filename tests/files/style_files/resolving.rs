@@ -60,6 +60,8 @@ fn molecule_of<'a>(
             is_hetero: false,
             chain: chain.as_bytes(),
             model,
+            b_factor: 0.0,
+            charge: 0.0,
         });
     }
     let bonds: Vec<FileBond> = bonds.iter().map(|&(a, b)| FileBond { a, b, order: 1 }).collect();

@@ -1,0 +1,14 @@
+//! Meshes as the renderer needs them: shapes of triangles, and the parts that place them.
+//!
+//! ```text
+//! import/{obj, stl, ply, off, gltf, threemf}  ->  RawMesh  ->  mesh/{weld, winding, normals, hull}  ->  Assembly
+//! ```
+//! Importers give [`RawMesh`]: positions in f64, triangles, what the file names. [`Assembly::build`] mends it and moves it
+//! near the origin, where single precision is fine enough.
+
+mod assembly;
+mod build;
+mod raw;
+
+pub use assembly::{Assembly, MeshMaterial, Part, Shape, pack_hull, pack_normal, unpack_hull, unpack_normal};
+pub use raw::{RawMesh, RawNormals, RawPart, RawShape};
