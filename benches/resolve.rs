@@ -63,6 +63,8 @@ fn molecule(kind: &str, num_atoms: usize) -> Molecule {
             is_hetero: false,
             chain: chain.as_bytes(),
             model: 1,
+            b_factor: 0.0,
+            charge: 0.0,
         });
     }
     let bonds: Vec<FileBond> = (1..num_atoms as u32).map(|b| FileBond { a: b - 1, b, order: 1 }).collect();
