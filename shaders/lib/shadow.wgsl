@@ -33,6 +33,24 @@ fn blocks(light_view: View, id: u32, origin: vec3<f32>, toward: vec3<f32>) -> bo
     return span.x <= span.y && span.y > 0.0;
 }
 
+// Share of the light that triangles let through to a point at depth `t`: of the four texels around its place, each
+// weighed by how near it is [Reeves1987].
+fn mesh_light(light_view: View, layer: i32, place_px: vec2<f32>, t: f32, last: vec2<i32>) -> f32 {
+    let base = floor(place_px - 0.5);
+    let share = place_px - 0.5 - base;
+    var open = 0.0;
+    for (var i = 0; i < 4; i++) {
+        let corner = vec2<i32>(i & 1, i >> 1);
+        let texel = vec2<i32>(base) + corner;
+        let weights = select(1.0 - share, share, corner == vec2<i32>(1));
+        let seen = textureLoad(shadow_maps, clamp(texel, vec2<i32>(0), last), layer, 0).xy;
+        let depth = light_view.near + (light_view.far - light_view.near) * unpack2x16unorm(seen.y).x;
+        let is_blocked = (seen.x >> 29u) == KIND_MESH && depth < t && all(texel == clamp(texel, vec2<i32>(0), last));
+        open += select(weights.x * weights.y, 0.0, is_blocked);
+    }
+    return open;
+}
+
 fn shadow_light(light: Light, s: Surface) -> f32 {
     let layer = light.shadow;
     let light_view = shadows.views[layer].light;
@@ -45,21 +63,46 @@ fn shadow_light(light: Light, s: Surface) -> f32 {
     if light.softness_tan <= 0.0 {
         let toward = mix(-normalize(point), vec3<f32>(0.0, 0.0, 1.0), light_view.orthographic);
         let base = vec2<i32>(floor(place_px - 0.5));
+        // What a triangle shades is told by depths: the few that the map names would leave gaps between them. Moved a texel
+        // and a half outwards, no plane shades itself however it slopes.
+        var mesh_t = t;
+        var mesh_place_px = place_px;
+        if MESHES {
+            let texel_light = light_view.pixel_view * mix(t, 1.0, light_view.orthographic);
+            let outwards = (shadows.views[layer].light_from_view * vec4<f32>(s.normal_view, 0.0)).xyz;
+            let moved = point + outwards * (1.5 * texel_light);
+            mesh_t = -moved.z;
+            let moved_ndc = moved.xy / (light_view.half_extent * mix(mesh_t, 1.0, light_view.orthographic));
+            mesh_place_px = (moved_ndc * vec2<f32>(0.5, -0.5) + 0.5) * light_view.size_px;
+        }
         var seen = s.id;
         for (var i = 0; i < 4; i++) {
             let texel = base + vec2<i32>(i & 1, i >> 1);
             if any(texel < vec2<i32>(0)) || any(texel > last) { continue; }
             let id = textureLoad(shadow_maps, texel, layer, 0).x;
             if id == 0u || id == s.id || id == seen { continue; }
+            if MESHES && (id >> 29u) == KIND_MESH {
+                continue;
+            }
             seen = id;
             if blocks(light_view, id, point, toward) { return 0.0; }
         }
+        if MESHES { return mesh_light(light_view, layer, mesh_place_px, mesh_t, last); }
         return 1.0;
     }
 
     let texel_light = light_view.pixel_view * mix(t, 1.0, light_view.orthographic);
     // Two texels: neighbouring objects that touch do not shade each other's seam.
     let near_enough = t - 2.0 * texel_light;
+    // A flat receiver goes on beneath the filter: depths are compared with its plane there [Isidoro2006], which is
+    // taken as no steeper than four to one.
+    var slope = vec2<f32>(0.0);
+    if MESHES && (s.id >> 29u) == KIND_MESH {
+        let normal = (shadows.views[layer].light_from_view * vec4<f32>(s.normal_view, 0.0)).xyz;
+        let steep = normal.xy / max(abs(normal.z), 0.05) * sign(normal.z);
+        let tangent = length(steep);
+        slope = vec2<f32>(steep.x, -steep.y) * (min(tangent, 4.0) / max(tangent, 1e-6)) * texel_light;
+    }
     // The widest penumbra: as if the blocker were the nearest thing that the light can see.
     // A point light has its angular diameter as seen from here, hence the quotient of the depths.
     let nearest = mix(t / light_view.near, 1.0, light_view.orthographic);
@@ -68,8 +111,9 @@ fn shadow_light(light: Light, s: Surface) -> f32 {
     var blocker_sum = 0.0;
     var blockers = 0.0;
     for (var i = 0u; i < SOFT_TAPS; i++) {
-        let tap = shadow_tap(light_view, layer, place_px + reach * disc_tap(i, turn), last, s.id);
-        if tap.x < near_enough {
+        let offset = reach * disc_tap(i, turn);
+        let tap = shadow_tap(light_view, layer, place_px + offset, last, s.id);
+        if tap.x < near_enough + min(dot(slope, offset), 0.0) {
             blocker_sum += min(tap.y, near_enough);
             blockers += 1.0;
         }
@@ -81,8 +125,9 @@ fn shadow_light(light: Light, s: Surface) -> f32 {
     let wide = max(light.softness_tan * (t - blocker_t) * quotient / texel_light, 0.5);
     var open = 0.0;
     for (var i = 0u; i < SOFT_TAPS; i++) {
-        let tap = shadow_tap(light_view, layer, place_px + wide * disc_tap(i, turn), last, s.id);
-        if tap.x >= near_enough { open += 1.0; }
+        let offset = wide * disc_tap(i, turn);
+        let tap = shadow_tap(light_view, layer, place_px + offset, last, s.id);
+        if tap.x >= near_enough + min(dot(slope, offset), 0.0) { open += 1.0; }
     }
     return open / f32(SOFT_TAPS);
 }

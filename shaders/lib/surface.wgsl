@@ -43,7 +43,7 @@ fn seen_at(ray: Ray, span: vec2<f32>, middle: vec3<f32>) -> f32 {
     return select(t, nearest, t < 0.0);
 }
 
-// The surface that `id` names along `ray`. ATOMS and CONNECTORS say which kinds the scene has at all.
+// The surface that `id` names along `ray`. ATOMS, CONNECTORS and MESHES say which kinds the scene has at all.
 fn surface_at(ray: Ray, id: u32) -> Surface {
     var s: Surface;
     let index = id & INDEX_MASK;
@@ -52,7 +52,15 @@ fn surface_at(ray: Ray, id: u32) -> Surface {
     // Curvature of a sphere is 1/r both ways, of a cylinder 1/r across its axis.
     var axis = vec3<f32>(0.0);
     var bend = 0.0;
-    if ATOMS && (!CONNECTORS || (id >> 29u) == KIND_ATOM) {
+    var mesh: MeshPoint;
+    var is_mesh = false;
+    if MESHES && ((!ATOMS && !CONNECTORS) || (id >> 29u) == KIND_MESH) {
+        mesh = mesh_point(ray, index);
+        is_mesh = true;
+        t = mesh.t;
+        normal = mesh.normal;
+        s.base_color = mesh.base_color;
+    } else if ATOMS && (!CONNECTORS || (id >> 29u) == KIND_ATOM) {
         let atom = atom_at(index);
         let center = to_view(view, atom.position_world);
         t = seen_at(ray, sphere_span(ray, center, atom.radius), center);
@@ -84,6 +92,10 @@ fn surface_at(ray: Ray, id: u32) -> Surface {
     s.position_dy = tangent_step(ray, t, normal, bend, dy, view.orthographic);
     s.normal_dx = turned * bend * (s.position_dx - axis * dot(axis, s.position_dx));
     s.normal_dy = turned * bend * (s.position_dy - axis * dot(axis, s.position_dy));
+    if MESHES && is_mesh {
+        s.normal_dx = mesh_normal_step(mesh, s.position_dx);
+        s.normal_dy = mesh_normal_step(mesh, s.position_dy);
+    }
     s.to_viewer_dx = to_viewer_step(ray, dx, view.orthographic);
     s.to_viewer_dy = to_viewer_step(ray, dy, view.orthographic);
     return s;

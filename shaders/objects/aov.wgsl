@@ -4,6 +4,11 @@
 @group(0) @binding(0) var<uniform> view: View;
 @group(0) @binding(1) var atoms: texture_2d<u32>;
 @group(0) @binding(2) var connectors: texture_2d<u32>;
+@group(0) @binding(6) var mesh_vertices: texture_2d<u32>;
+@group(0) @binding(7) var mesh_triangles: texture_2d<u32>;
+@group(0) @binding(8) var mesh_parts: texture_2d<u32>;
+@group(0) @binding(9) var mesh_runs: texture_2d<u32>;
+@group(0) @binding(10) var mesh_pages: texture_2d<u32>;
 @group(1) @binding(0) var visibility: texture_2d<u32>;
 
 @vertex
@@ -14,7 +19,7 @@ fn aov_vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32
 @fragment
 fn aov_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let id = textureLoad(visibility, vec2<i32>(position.xy), 0).x;
-    if id == 0u || (id >> 29u) > KIND_CONNECTOR {
+    if id == 0u || (id >> 29u) > KIND_LAST_SURFACE {
         return vec4<f32>(0.0, 0.0, 0.0, -1.0);
     }
     let s = surface_at(ray_at(view, position.xy), id);

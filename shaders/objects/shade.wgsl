@@ -11,6 +11,11 @@ struct Output {
 @group(0) @binding(0) var<uniform> view: View;
 @group(0) @binding(1) var atoms: texture_2d<u32>;
 @group(0) @binding(2) var connectors: texture_2d<u32>;
+@group(0) @binding(6) var mesh_vertices: texture_2d<u32>;
+@group(0) @binding(7) var mesh_triangles: texture_2d<u32>;
+@group(0) @binding(8) var mesh_parts: texture_2d<u32>;
+@group(0) @binding(9) var mesh_runs: texture_2d<u32>;
+@group(0) @binding(10) var mesh_pages: texture_2d<u32>;
 @group(0) @binding(3) var<uniform> materials: array<Material, 512>;
 @group(1) @binding(0) var<uniform> lights: Lights;
 @group(1) @binding(1) var<uniform> output: Output;
@@ -28,7 +33,7 @@ fn shade_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f
     let id = textureLoad(visibility, vec2<i32>(position.xy), 0).x;
     let material = material_of(id);
     var color = shade_object(surface_at(ray_at(view, position.xy), id), material);
-    if HULLS && (id >> 29u) > KIND_CONNECTOR {
+    if HULLS && (id >> 29u) > KIND_LAST_SURFACE {
         color = materials[material].hull_color.rgb;
     }
     if ENCODE {

@@ -72,7 +72,7 @@ impl Values {
     }
 
     /// Replaces a default by another one: no file gives the value.
-    pub(super) fn change_default(&mut self, name: &str, value: Value) {
+    pub fn change_default(&mut self, name: &str, value: Value) {
         let index = self.index(name).expect("a table knows its own names");
         self.entries[index] = (value, Origin::Default);
     }

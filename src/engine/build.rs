@@ -1,16 +1,18 @@
 //! From a scene and a style to what a frame draws: radii, colours, materials, and which objects are left out.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::palette::AtomColors;
-use crate::config::{AtomRadius, BaseColor, Geometry, Style, Value};
+use super::palette::{AtomColors, PartColors};
+use crate::config::{AtomRadius, BaseColor, Geometry, Origin, ShaderUse, Style, Value, Values};
 use crate::frame::Materials;
+use crate::frame::mesh::MeshPart;
 use crate::frame::objects::{self, Connector, DrawList, Material, pack_linear};
 use crate::providers::{Assignment, Lengths};
-use crate::scene::{Atom, Bond, Molecule};
+use crate::scene::{Atom, Bond, MeshMaterial, Molecule, MoleculeCopy, Scene, Sphere};
 use crate::shading::{self, MaterialContext, SHADERS};
 
 /// Whatever of a style decides which objects are drawn, how large, and in which colours of their own. Styles that are
@@ -37,23 +39,50 @@ impl ObjectKey {
 pub struct Objects {
     /// The objects.
     pub list: DrawList,
-    /// The shader of the style that each material is, in the order of the materials' numbers.
-    pub materials: Vec<usize>,
+    /// What each material is, in the order of the materials' numbers.
+    pub materials: Vec<MaterialUse>,
     /// Lengths, with the median radius of the drawn atoms.
     pub lengths: Lengths,
 }
 
-/// Makes every object of the molecule that the style draws; `assignment` is what the style's rules come to.
-pub fn objects(molecule: &Molecule, style: &Style, assignment: &Assignment) -> Objects {
-    let bounds = molecule.bounding_sphere();
+/// A shader of the style, with what a file says of the surface where that counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct MaterialUse {
+    /// Which of the style's shaders.
+    pub shader: usize,
+    /// Metallic and smoothness of the file, in steps of one [`FINISH_STEPS`]th.
+    pub finish: Option<[u8; 2]>,
+}
+
+/// Steps in which a file's finish is kept: finer than is seen, and coarse enough that parts share materials.
+const FINISH_STEPS: f32 = 64.0;
+
+/// Makes every object of the scene that the style draws; `assignment` is what the style's rules come to.
+pub fn objects(scene: &Arc<Scene>, style: &Style, assignment: &Assignment) -> Objects {
+    let (mut objects, mut materials) =
+        molecule_objects(&scene.molecule, scene.bounding_sphere(), scene.unit, style, assignment);
+    if !scene.assembly.is_empty() {
+        add_parts(&mut objects.list, &mut materials, scene, style, assignment);
+    }
+    Objects { materials: materials.used, ..objects }
+}
+
+/// The objects of a molecule alone, in a scene of these bounds; `unit` is the scene's, in angstrom.
+fn molecule_objects(
+    molecule: &Molecule,
+    bounds: Sphere,
+    unit: f64,
+    style: &Style,
+    assignment: &Assignment,
+) -> (Objects, MaterialNumbers) {
     let geometry_lengths = Lengths::new(bounds, None);
 
     let uses: Vec<Option<usize>> = assignment.atoms.iter().map(|used| used.map(|index| index as usize)).collect();
 
     let radius = |atom: &Atom| {
         let plain = match style.geometry.atom {
-            AtomRadius::Vdw => f64::from(atom.element.vdw_radius()),
-            AtomRadius::Covalent => f64::from(atom.element.covalent_radius()),
+            AtomRadius::Vdw => f64::from(atom.element.vdw_radius()) / unit,
+            AtomRadius::Covalent => f64::from(atom.element.covalent_radius()) / unit,
             AtomRadius::Length(length) => geometry_lengths.world(length),
         };
         (plain * style.geometry.scale) as f32
@@ -70,16 +99,20 @@ pub fn objects(molecule: &Molecule, style: &Style, assignment: &Assignment) -> O
     let colors = AtomColors::new(molecule, by_residue);
 
     let mut list = DrawList::default();
-    for (atom, used) in molecule.atoms.iter().zip(&uses) {
+    // Which atom and which bond each object is, where copies need to know.
+    let is_copied = !molecule.copies.is_empty();
+    let (mut atom_of, mut bond_of) = (Vec::new(), Vec::new());
+    for (index, (atom, used)) in (0..).zip(molecule.atoms.iter().zip(&uses)) {
         let (Some(used), radius) = (*used, radius(atom)) else { continue };
         if radius > 0.0 {
             list.atoms.push(objects::Atom {
                 position_world: atom.position.to_array(),
                 radius,
                 color: pack_linear(colors.of(molecule, atom, own_scheme(&style.shaders[used]))),
-                material: materials.of(used),
+                material: materials.of(plain_use(used)),
                 _pad0: 0,
             });
+            atom_of.extend(is_copied.then_some(index));
         }
     }
 
@@ -98,7 +131,7 @@ pub fn objects(molecule: &Molecule, style: &Style, assignment: &Assignment) -> O
             continue;
         }
         let scheme = own_scheme(&style.shaders[used]);
-        let material = materials.of(used);
+        let material = materials.of(plain_use(used));
         let toward = || neighbours.direction(molecule, bond);
         for (offset, radius) in strands(b.position - a.position, order, bond_radius, toward) {
             list.connectors.push(Connector {
@@ -109,12 +142,102 @@ pub fn objects(molecule: &Molecule, style: &Style, assignment: &Assignment) -> O
                 color_a: pack_linear(colors.of(molecule, a, scheme)),
                 color_b: pack_linear(colors.of(molecule, b, scheme)),
             });
+            bond_of.extend(is_copied.then_some(*bond));
         }
     }
-    Objects { list, materials: materials.used, lengths }
+    if is_copied {
+        place_copies(&mut list, &atom_of, &bond_of, &molecule.copies);
+    }
+    (Objects { list, materials: Vec::new(), lengths }, materials)
 }
 
-fn scheme(shader: &crate::config::ShaderUse) -> BaseColor {
+/// The objects of a molecule that stands alone.
+pub fn objects_of(molecule: &Molecule, style: &Style, assignment: &Assignment) -> Objects {
+    let (objects, materials) = molecule_objects(molecule, molecule.bounding_sphere(), 1.0, style, assignment);
+    Objects { materials: materials.used, ..objects }
+}
+
+/// Adds the parts of meshes.
+fn add_parts(
+    list: &mut DrawList,
+    materials: &mut MaterialNumbers,
+    scene: &Arc<Scene>,
+    style: &Style,
+    assignment: &Assignment,
+) {
+    let assembly = &scene.assembly;
+    let colors = PartColors::new(assembly);
+    let parts = assembly.parts.iter().zip(&assignment.parts).map(|(part, used)| {
+        let used = used.map(|index| index as usize)?;
+        let own = own_scheme(&style.shaders[used]);
+        let of_file = part.material.and_then(|material| assembly.materials.get(material as usize));
+        let finish = of_file.filter(|_| PartColors::is_of_file(own)).and_then(finish);
+        let shape = &assembly.shapes[part.shape as usize];
+        let material = materials.of(MaterialUse { shader: used, finish });
+        let mut color = pack_linear(colors.of(assembly, part, own));
+        // Colours of vertices are the file's, too: the spare half says that they count.
+        color[1] |= u32::from(PartColors::is_of_file(own) && !shape.colors.is_empty()) << 16;
+        Some(MeshPart::new(&part.world_from_shape, color, material, shape.sphere.radius))
+    });
+    list.parts = parts.collect();
+    list.meshes = Some(Arc::clone(scene));
+}
+
+/// What a file says of a surface beside its colour.
+fn finish(of_file: &MeshMaterial) -> Option<[u8; 2]> {
+    let steps = |value: f32| (value.clamp(0.0, 1.0) * FINISH_STEPS).round() as u8;
+    let (metallic, roughness) = (of_file.metallic?, of_file.roughness?);
+    Some([steps(metallic), steps(1.0 - roughness)])
+}
+
+/// The values of a shader for a material: where it takes the file's colours and leaves its finish at the defaults, the
+/// file's finish, too.
+fn values_of<'a>(of: &MaterialUse, shader: &'a ShaderUse) -> Cow<'a, Values> {
+    let is_default = |name: &str| shader.values.origin(name) == Some(&Origin::Default);
+    let is_of_file = PartColors::is_of_file(scheme(shader)) && is_default(METALLIC) && is_default(SMOOTHNESS);
+    let Some([metallic, smoothness]) = of.finish.filter(|_| is_of_file) else { return Cow::Borrowed(&shader.values) };
+    let share = |steps: u8| Value::Number(f64::from(steps) / f64::from(FINISH_STEPS));
+    let mut values = shader.values.clone();
+    values.change_default(METALLIC, share(metallic));
+    values.change_default(SMOOTHNESS, share(smoothness));
+    Cow::Owned(values)
+}
+
+/// The parameters that a file's material sets.
+const METALLIC: &str = "metallic";
+const SMOOTHNESS: &str = "smoothness";
+
+fn plain_use(shader: usize) -> MaterialUse {
+    MaterialUse { shader, finish: None }
+}
+
+/// Puts the objects where the copies of a biological assembly are, and nowhere else. `bonds` are those of the connectors.
+fn place_copies(list: &mut DrawList, atom_of: &[u32], bond_of: &[Bond], copies: &[MoleculeCopy]) {
+    let (atoms, connectors) = (std::mem::take(&mut list.atoms), std::mem::take(&mut list.connectors));
+    for copy in copies {
+        let place = copy.world_from_molecule;
+        let moved = |at: [f32; 3]| place.transform_point3(Vec3::from(at)).to_array();
+        for range in &copy.atoms {
+            let start = atom_of.partition_point(|&atom| atom < range.start);
+            let end = atom_of.partition_point(|&atom| atom < range.end);
+            let drawn = &atoms[start..end];
+            list.atoms
+                .extend(drawn.iter().map(|atom| objects::Atom { position_world: moved(atom.position_world), ..*atom }));
+        }
+        let holds = |atom: u32| {
+            let after = copy.atoms.partition_point(|range| range.start <= atom);
+            after > 0 && copy.atoms[after - 1].contains(&atom)
+        };
+        let joined = connectors.iter().zip(bond_of).filter(|(_, bond)| holds(bond.a) && holds(bond.b));
+        list.connectors.extend(joined.map(|(connector, _)| Connector {
+            a_world: moved(connector.a_world),
+            b_world: moved(connector.b_world),
+            ..*connector
+        }));
+    }
+}
+
+fn scheme(shader: &ShaderUse) -> BaseColor {
     // Post effects are in the same list and have none.
     match shader.values.get(shading::BASE_COLOR.name) {
         Some(Value::BaseColor(color)) => *color,
@@ -124,7 +247,7 @@ fn scheme(shader: &crate::config::ShaderUse) -> BaseColor {
 
 /// Where the colours of the objects themselves come from. One colour for all lies in the material, which then covers
 /// them.
-fn own_scheme(shader: &crate::config::ShaderUse) -> BaseColor {
+fn own_scheme(shader: &ShaderUse) -> BaseColor {
     match scheme(shader) {
         BaseColor::Color(_) => BaseColor::Element,
         other => other,
@@ -197,28 +320,36 @@ fn strands(along: Vec3, order: u8, radius: f32, toward: impl FnOnce() -> Option<
 /// Numbers the materials that objects use, in order of first use.
 #[derive(Default)]
 struct MaterialNumbers {
-    number_of: BTreeMap<usize, u32>,
-    used: Vec<usize>,
+    number_of: BTreeMap<MaterialUse, u32>,
+    used: Vec<MaterialUse>,
 }
 
 impl MaterialNumbers {
-    fn of(&mut self, shader: usize) -> u32 {
-        *self.number_of.entry(shader).or_insert_with(|| {
-            self.used.push(shader);
+    fn of(&mut self, of: MaterialUse) -> u32 {
+        *self.number_of.entry(of).or_insert_with(|| {
+            self.used.push(of);
             self.used.len() as u32 - 1
         })
     }
 }
 
-/// The materials of the shaders `used`, by number. `height_px` is the picture's, for lengths in points.
-pub fn materials(style: &Style, used: &[usize], exposure_factor: f32, lengths: &Lengths, height_px: u32) -> Materials {
+/// The materials of what is `used`, by number. `height_px` is the picture's, for lengths in points.
+pub fn materials(
+    style: &Style,
+    used: &[MaterialUse],
+    exposure_factor: f32,
+    lengths: &Lengths,
+    height_px: u32,
+) -> Materials {
     let context = MaterialContext { exposure_factor };
     let mut materials = Materials::default();
-    for shader_use in used.iter().map(|&used| &style.shaders[used]) {
+    for of in used {
+        let shader_use = &style.shaders[of.shader];
+        let values = values_of(of, shader_use);
         // The loader accepts only names of the registry.
         let shader_index = shading::shader_index(shader_use.shader).unwrap_or(0);
         let shader = SHADERS[shader_index];
-        let bytes = shader.material(&shader_use.values, &context);
+        let bytes = shader.material(&values, &context);
         let params = materials.params.entry(shader_index).or_default();
         *materials.features.entry(shader_index).or_default() |= shader.features_used(&shader_use.values);
         let params_index = params.len() / bytes.len().max(1);

@@ -51,7 +51,7 @@ fn effects_out_of_order(style: &Style) -> Vec<Warning> {
 /// Outlines that are wider than the smallest object they are drawn around, which they turn into a blot.
 fn wide_outlines(style: &Style, molecule: &Molecule) -> Vec<Warning> {
     let provider = ShaderProvider::new(molecule, style);
-    let objects = build::objects(molecule, style, provider.assignment());
+    let objects = build::objects_of(molecule, style, provider.assignment());
     let mut smallest = vec![[f32::INFINITY; 2]; objects.materials.len()];
     for atom in &objects.list.atoms {
         let [of_atoms, _] = &mut smallest[atom.material as usize];
@@ -62,7 +62,7 @@ fn wide_outlines(style: &Style, molecule: &Molecule) -> Vec<Warning> {
         *of_connectors = of_connectors.min(connector.radius);
     }
     let mut warnings = Vec::new();
-    for (used, [atom, connector]) in objects.materials.iter().map(|used| &style.shaders[*used]).zip(smallest) {
+    for (used, [atom, connector]) in objects.materials.iter().map(|used| &style.shaders[used.shader]).zip(smallest) {
         let hull = shading::shader_index(used.shader).and_then(|shader| shading::SHADERS[shader].hull(&used.values));
         let width = hull.map_or(0.0, |hull| objects.lengths.screen(hull.width, HEIGHT_PX).1) as f32;
         let (outlined, radius) = match atom <= connector {

@@ -72,7 +72,7 @@ pub struct Counts {
     /// Cylinders.
     pub cylinders: u32,
     /// Triangles that the rasteriser sees for one sample.
-    pub triangles: u32,
+    pub triangles: u64,
 }
 
 /// What is drawn: a scene in a style, with the providers that answer for them.
@@ -86,7 +86,7 @@ impl Content {
     fn new(scene: Arc<Scene>, style: Arc<Style>) -> Content {
         let molecule = &scene.molecule;
         let positions = molecule.atoms.iter().map(|atom| atom.position);
-        let camera = CameraProvider::new(style.camera.clone(), molecule.bounding_sphere(), positions);
+        let camera = CameraProvider::new(style.camera.clone(), scene.bounding_sphere(), positions);
         Content { scene, style, camera }
     }
 }
@@ -104,8 +104,8 @@ struct Resolved {
 struct Drawn {
     shaders: ShaderProvider,
     key: ObjectKey,
-    /// The style's shader of each material.
-    used: Vec<usize>,
+    /// What each material is.
+    used: Vec<build::MaterialUse>,
     lengths: Lengths,
     lighting: LightingProvider,
     height_px: u32,
@@ -295,7 +295,8 @@ impl Engine {
     /// What the last frame drew.
     pub fn counts(&self) -> Counts {
         let [spheres, cylinders] = self.renderer.object_counts();
-        Counts { spheres, cylinders, triangles: 2 * (spheres + cylinders) }
+        let triangles = 2 * u64::from(spheres + cylinders) + self.renderer.num_triangles();
+        Counts { spheres, cylinders, triangles }
     }
 
     /// What was asked of the device so far.
@@ -352,12 +353,12 @@ fn resolve(content: &Content, drawn: Option<&Drawn>, height_px: u32) -> Resolved
     let (list, used, lengths) = match drawn.filter(|drawn| drawn.key == key) {
         Some(drawn) => (None, drawn.used.clone(), drawn.lengths),
         None => {
-            let objects = build::objects(molecule, style, shaders.assignment());
+            let objects = build::objects(scene, style, shaders.assignment());
             (Some(objects.list), objects.materials, objects.lengths)
         }
     };
     let materials = build::materials(style, &used, camera.exposure_factor(), &lengths, height_px);
-    let lighting = LightingProvider::new(style.lights.clone(), molecule.bounding_sphere(), lengths);
+    let lighting = LightingProvider::new(style.lights.clone(), scene.bounding_sphere(), lengths);
     Resolved { list, materials, drawn: Drawn { shaders, key, used, lengths, lighting, height_px } }
 }
 
@@ -373,7 +374,7 @@ fn frame_input<T>(
     draw(&FrameInput {
         camera: &camera,
         lighting: &lighting,
-        bounds: content.scene.molecule.bounding_sphere(),
+        bounds: content.scene.bounding_sphere(),
         background: content.camera.background(request.transparent),
         size: request.size,
         samples: request.samples,

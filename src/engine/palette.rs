@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use crate::config::{BaseColor, Srgba};
-use crate::scene::{Atom, Molecule};
+use crate::scene::{Assembly, Atom, Molecule, Part};
 use crate::shading::linear;
 
 /// Colours of chains and residues in turn: after [Okabe2008, "Set of colors"], which stay apart for colour-blind eyes, softened
@@ -57,5 +57,50 @@ impl AtomColors {
             BaseColor::Residue => turn(self.residue_kinds.get(atom.residue as usize).copied().unwrap_or(0)),
             _ => linear(Srgba::from_bytes(atom.element.color())),
         }
+    }
+}
+
+/// Gives each part of a mesh its own colour.
+pub struct PartColors {
+    linear: [Vec3; PALETTE.len()],
+    /// Number of each part's name, in order of first appearance; parts without a name are told apart by their shape.
+    turn_of: std::collections::HashMap<(u32, u32), u32>,
+}
+
+/// What has no material: a light grey, as bare plaster.
+const NO_MATERIAL: Vec3 = Vec3::splat(0.6);
+
+impl PartColors {
+    /// Prepares the colours of all parts.
+    pub fn new(assembly: &Assembly) -> PartColors {
+        let mut turn_of = std::collections::HashMap::new();
+        for part in &assembly.parts {
+            let next = turn_of.len() as u32;
+            turn_of.entry(PartColors::key(assembly, part)).or_insert(next);
+        }
+        PartColors { linear: PALETTE.map(|color| linear(Srgba::from_bytes(color))), turn_of }
+    }
+
+    fn key(assembly: &Assembly, part: &Part) -> (u32, u32) {
+        let is_named = !assembly.names[part.name as usize].is_empty();
+        (part.name, if is_named { u32::MAX } else { part.shape })
+    }
+
+    /// Whether a scheme leaves meshes the colours of their file. Elements do: a mesh has none.
+    pub fn is_of_file(scheme: BaseColor) -> bool {
+        matches!(scheme, BaseColor::Material | BaseColor::Element)
+    }
+
+    /// Linear colour of a part by a scheme. Chain and residue belong to molecules: parts stand in for them.
+    pub fn of(&self, assembly: &Assembly, part: &Part, scheme: BaseColor) -> Vec3 {
+        if PartColors::is_of_file(scheme) {
+            let material = part.material.and_then(|material| assembly.materials.get(material as usize));
+            // Colours of vertices are shares of the material's.
+            let is_colored = !assembly.shapes[part.shape as usize].colors.is_empty();
+            let plain = if is_colored { Vec3::ONE } else { NO_MATERIAL };
+            return material.map_or(plain, |material| material.base_color);
+        }
+        let turn = self.turn_of.get(&PartColors::key(assembly, part)).copied().unwrap_or(0);
+        self.linear[turn as usize % PALETTE.len()]
     }
 }

@@ -14,7 +14,7 @@ pub const GEOMETRY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Floa
 /// The pipeline of the geometry AOVs, once it is asked for.
 #[derive(Default)]
 pub struct Aov {
-    pipelines: BTreeMap<bool, (wgpu::BindGroupLayout, wgpu::RenderPipeline)>,
+    pipelines: BTreeMap<(bool, bool), (wgpu::BindGroupLayout, wgpu::RenderPipeline)>,
 }
 
 impl Aov {
@@ -32,14 +32,14 @@ impl Aov {
         from: &GeometrySource<'_>,
         target: &wgpu::TextureView,
     ) -> Result<(), GpuError> {
-        let (layout, pipeline) = match self.pipelines.entry(from.orthographic) {
+        let (layout, pipeline) = match self.pipelines.entry((from.orthographic, from.meshes)) {
             Entry::Occupied(entry) => entry.into_mut(),
             Entry::Vacant(entry) => {
                 let layout = fullscreen::layout(gpu, "aov", &[fullscreen::texture(wgpu::TextureSampleType::Uint)]);
                 let pipeline = fullscreen::pipeline(
                     gpu,
                     "aov",
-                    &aov_module(from.orthographic),
+                    &aov_module(from.orthographic, from.meshes),
                     ["aov_vertex", "aov_fragment"],
                     &[&visibility.layout, &layout],
                     GEOMETRY_FORMAT,
@@ -61,20 +61,23 @@ pub struct GeometrySource<'a> {
     pub ids: &'a wgpu::TextureView,
     /// Whether its view is orthographic.
     pub orthographic: bool,
+    /// Whether there are triangles of meshes.
+    pub meshes: bool,
 }
 
 /// The WGSL of the geometry AOVs.
-pub fn aov_module(orthographic: bool) -> Module {
+pub fn aov_module(orthographic: bool, meshes: bool) -> Module {
     let mut module = Module::new(&[
         wgsl!("lib/view.wgsl"),
         wgsl!("lib/objects.wgsl"),
         wgsl!("lib/intersect.wgsl"),
+        if meshes { wgsl!("lib/mesh.wgsl") } else { wgsl!("lib/mesh_none.wgsl") },
         wgsl!("lib/surface.wgsl"),
     ]);
     module.add_generated(
         "aov options",
         format!(
-            "const ORTHOGRAPHIC: bool = {orthographic};\nconst ATOMS: bool = true;\nconst CONNECTORS: bool = true;"
+            "const ORTHOGRAPHIC: bool = {orthographic};\nconst ATOMS: bool = true;\nconst CONNECTORS: bool = true;\nconst MESHES: bool = {meshes};"
         ),
     );
     module.add(wgsl!("objects/aov.wgsl"));

@@ -58,6 +58,8 @@ struct ObjectNeeds {
     atom_material: Option<u32>,
     /// The same of connectors.
     connector_material: Option<u32>,
+    /// The same of parts.
+    part_material: Option<u32>,
 }
 
 impl ObjectNeeds {
@@ -67,9 +69,14 @@ impl ObjectNeeds {
             materials.all(|material| material == first).then_some(first)
         }
         ObjectNeeds {
-            kinds: DrawnKinds { atoms: !list.atoms.is_empty(), connectors: !list.connectors.is_empty() },
+            kinds: DrawnKinds {
+                atoms: !list.atoms.is_empty(),
+                connectors: !list.connectors.is_empty(),
+                meshes: list.drawn_parts().next().is_some(),
+            },
             atom_material: common(list.atoms.iter().map(|atom| atom.material)),
             connector_material: common(list.connectors.iter().map(|connector| connector.material)),
+            part_material: common(list.drawn_parts().map(|part| part.material)),
         }
     }
 }
@@ -100,8 +107,10 @@ impl Needs {
             shaders: shaders.collect(),
             atoms: objects.kinds.atoms,
             connectors: objects.kinds.connectors,
+            meshes: objects.kinds.meshes,
             atom_material: objects.atom_material,
             connector_material: objects.connector_material,
+            part_material: objects.part_material,
             hulls: materials.has_hulls(),
             lights: 0,
             point_lights: false,

@@ -6,12 +6,14 @@ mod aov;
 mod contents;
 mod fullscreen;
 mod lights;
+pub mod mesh;
 pub mod objects;
 mod occlusion;
 mod resolve;
 mod shade;
 mod shadow;
 mod targets;
+mod texels;
 mod view;
 mod visibility;
 
@@ -34,8 +36,8 @@ use targets::Targets;
 pub use view::View;
 use view::sample_offsets_px;
 pub use visibility::VisibilityKey;
-pub use visibility::visibility_module;
 use visibility::{DEPTH_FORMAT, Eye, ID_FORMAT, Visibility, VisibilityPass};
+pub use visibility::{mesh_module, visibility_module};
 
 use crate::gpu::{Gpu, GpuError, GpuStruct, PassTimer, PassTimes, StructInfo, read_texture};
 use crate::scene::{Camera, LightPlace, Lighting, Sphere};
@@ -263,13 +265,13 @@ impl Renderer {
         let layers = self.maps.iter().flat_map(ShadowMaps::layers);
         for ((ids, depth), (shadow, lit_scene)) in layers.zip(plan.shadows.views.iter().zip(&lit_scenes)) {
             let pass = VisibilityPass { name: "shadow", view: 0, key: Plan::lit(shadow), ids, depth };
-            self.visibility.draw(&mut encoder, lit_scene, &pass, &mut timer);
+            self.visibility.draw(&mut encoder, lit_scene, objects, &pass, &mut timer);
         }
         let clear = if plan.direct { clear_value(input.background) } else { wgpu::Color::TRANSPARENT };
         let target = ShadeTarget { light: light.as_ref().unwrap_or(&output), depth: &depth, clear };
         for index in 0..samples as usize {
             let pass = VisibilityPass { name: "visibility", view: index, key: plan.seen, ids: &ids, depth: &depth };
-            self.visibility.draw(&mut encoder, &scene, &pass, &mut timer);
+            self.visibility.draw(&mut encoder, &scene, objects, &pass, &mut timer);
             self.shade.draw(&mut encoder, &plan.shade, &scene, index, &shade_group, &target, &mut timer);
             if (index + 1) % SAMPLES_PER_SUBMISSION == 0 && index + 1 < samples as usize {
                 gpu.queue.submit([std::mem::replace(&mut encoder, frame_encoder(&gpu)).finish()]);
@@ -335,7 +337,11 @@ impl Renderer {
         let geometry = gpu.target("geometry", input.size, 1, aov::GEOMETRY_FORMAT);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("aov") });
         let target = geometry.create_view(&Default::default());
-        let from = aov::GeometrySource { ids: &ids, orthographic: input.camera.orthographic };
+        let from = aov::GeometrySource {
+            ids: &ids,
+            orthographic: input.camera.orthographic,
+            meshes: self.contents.needs().kinds.meshes,
+        };
         self.aov.draw(&gpu, &mut encoder, &self.visibility, &scene, &from, &target)?;
         gpu.queue.submit([encoder.finish()]);
         gpu.wait()?;
@@ -360,6 +366,11 @@ impl Renderer {
     /// Milliseconds of each pass of the last timed frame; empty where the adapter has no timestamps.
     pub fn pass_times(&self) -> &PassTimes {
         &self.last_times
+    }
+
+    /// Triangles of meshes that are drawn.
+    pub fn num_triangles(&self) -> u64 {
+        self.contents.objects.meshes.num_triangles()
     }
 
     /// Spheres and cylinders that are drawn.
@@ -401,6 +412,9 @@ pub fn gpu_structs() -> Vec<StructInfo> {
         View::info(),
         objects::Atom::info(),
         objects::Connector::info(),
+        mesh::MeshVertex::info(),
+        mesh::MeshPart::info(),
+        mesh::MeshRun::info(),
         Material::info(),
         Light::info(),
         Lights::info(),

@@ -2,9 +2,14 @@
 
 use glam::Vec3;
 
+use std::sync::Arc;
+
+use super::mesh::{MeshBuffers, MeshPart};
 use super::occlusion::Ball;
+use super::texels::{KeptTexture, ROW_BYTES};
 use crate::gpu::{Gpu, GpuError};
 use crate::gpu_struct;
+use crate::scene::Scene;
 
 gpu_struct! {
     "lib/objects.wgsl",
@@ -74,12 +79,25 @@ pub struct DrawList {
     pub atoms: Vec<Atom>,
     /// The cylinders.
     pub connectors: Vec<Connector>,
+    /// The scene of the meshes, where it has any.
+    pub meshes: Option<Arc<Scene>>,
+    /// An entry for each part of that scene, none where it is hidden.
+    pub parts: Vec<Option<MeshPart>>,
+}
+
+impl DrawList {
+    /// The parts that are drawn.
+    pub fn drawn_parts(&self) -> impl Iterator<Item = &MeshPart> {
+        self.parts.iter().flatten()
+    }
 }
 
 /// The draw list on the device, and the balls by which its drawing order is found.
 pub struct ObjectBuffers {
     atoms: KeptTexture,
     connectors: KeptTexture,
+    /// The meshes.
+    pub meshes: MeshBuffers,
     /// How many atoms.
     pub num_atoms: u32,
     /// How many connectors.
@@ -97,6 +115,7 @@ impl Default for ObjectBuffers {
         ObjectBuffers {
             atoms: KeptTexture::new("atoms"),
             connectors: KeptTexture::new("connectors"),
+            meshes: MeshBuffers::default(),
             num_atoms: 0,
             num_connectors: 0,
             atom_balls: Vec::new(),
@@ -118,6 +137,10 @@ impl ObjectBuffers {
             let (a, b) = (Vec3::from(connector.a_world), Vec3::from(connector.b_world));
             Ball { center: (a + b) * 0.5, radius: 0.5 * a.distance(b) + connector.radius }
         };
+        match &list.meshes {
+            Some(scene) => self.meshes.set(gpu, scene, &list.parts)?,
+            None => self.meshes.clear(),
+        }
         self.atoms.set(gpu, bytemuck::cast_slice(&list.atoms));
         self.connectors.set(gpu, bytemuck::cast_slice(&list.connectors));
         self.num_atoms = list.atoms.len() as u32;
@@ -128,9 +151,13 @@ impl ObjectBuffers {
         Ok(())
     }
 
-    /// Atoms and connectors to bind; none before the first content.
-    pub fn views(&self) -> Option<[wgpu::TextureView; 2]> {
-        Some([self.atoms.view()?, self.connectors.view()?])
+    /// Atoms, connectors and the five of meshes to bind; none before the first content.
+    pub fn views(&self) -> Option<[wgpu::TextureView; 7]> {
+        let (atoms, connectors) = (self.atoms.view()?, self.connectors.view()?);
+        // Without meshes nothing reads theirs.
+        let [vertices, triangles, parts, runs, pages] =
+            self.meshes.views().unwrap_or_else(|| std::array::from_fn(|_| atoms.clone()));
+        Some([atoms, connectors, vertices, triangles, parts, runs, pages])
     }
 }
 
@@ -148,87 +175,5 @@ pub fn check(gpu: &Gpu, list: &DrawList) -> Result<(), GpuError> {
             return Err(GpuError::TooMany { what, count, bytes: bytes as u64, limit });
         }
     }
-    Ok(())
-}
-
-/// Texels in a row of the object textures; `OBJECT_ROW` in `shaders/lib/objects.wgsl`.
-const OBJECT_ROW: u32 = 2048;
-
-/// A texel holds four 32-bit words.
-const TEXEL_BYTES: usize = 16;
-
-/// Bytes in a row.
-const ROW_BYTES: usize = OBJECT_ROW as usize * TEXEL_BYTES;
-
-/// Objects in a texture, one texel for each 16 bytes, and a hash of each row, so that a row that stays is not written.
-struct KeptTexture {
-    label: &'static str,
-    texture: Option<(wgpu::Texture, wgpu::TextureView)>,
-    row_hashes: Vec<u64>,
-}
-
-impl KeptTexture {
-    fn new(label: &'static str) -> KeptTexture {
-        KeptTexture { label, texture: None, row_hashes: Vec::new() }
-    }
-
-    fn view(&self) -> Option<wgpu::TextureView> {
-        self.texture.as_ref().map(|(_, view)| view.clone())
-    }
-
-    fn set(&mut self, gpu: &Gpu, bytes: &[u8]) {
-        let rows = bytes.len().div_ceil(ROW_BYTES).max(1) as u32;
-        let hashes: Vec<u64> = bytes.chunks(ROW_BYTES).map(hash).collect();
-        // A texture that grew for a large scene is given back once a small one would fit it four times.
-        let fits = |texture: &wgpu::Texture| (rows..=4 * rows).contains(&texture.height());
-        if !self.texture.as_ref().is_some_and(|(texture, _)| fits(texture)) {
-            let texture = gpu.texture(&wgpu::TextureDescriptor {
-                label: Some(self.label),
-                size: wgpu::Extent3d { width: OBJECT_ROW, height: rows, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: wgpu::TextureFormat::Rgba32Uint,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-                view_formats: &[],
-            });
-            let view = texture.create_view(&Default::default());
-            self.texture = Some((texture, view));
-            self.row_hashes.clear();
-        }
-        let Some((texture, _)) = &self.texture else { return };
-        let changed = |row: usize| self.row_hashes.get(row) != hashes.get(row);
-        let mut row = 0;
-        while row < hashes.len() {
-            // Whole rows that changed go in one write, a row that is not full by itself.
-            let is_full = |row: usize| (row + 1) * ROW_BYTES <= bytes.len();
-            let mut end = row;
-            while end < hashes.len() && changed(end) && is_full(end) {
-                end += 1;
-            }
-            if end > row {
-                write_rows(gpu, texture, row, OBJECT_ROW, &bytes[row * ROW_BYTES..end * ROW_BYTES]);
-            } else if changed(row) {
-                let rest = &bytes[row * ROW_BYTES..];
-                write_rows(gpu, texture, row, (rest.len() / TEXEL_BYTES) as u32, rest);
-            }
-            row = end.max(row + 1);
-        }
-        self.row_hashes = hashes;
-    }
-}
-
-fn write_rows(gpu: &Gpu, texture: &wgpu::Texture, row: usize, width: u32, bytes: &[u8]) {
-    let origin = wgpu::Origin3d { x: 0, y: row as u32, z: 0 };
-    let to = wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() };
-    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(ROW_BYTES as u32), rows_per_image: None };
-    let height = bytes.len().div_ceil(ROW_BYTES) as u32;
-    gpu.write_texture(to, bytes, layout, wgpu::Extent3d { width, height, depth_or_array_layers: 1 });
-}
-
-fn hash(row: &[u8]) -> u64 {
-    use std::hash::Hasher;
-    let mut hasher = std::hash::DefaultHasher::new();
-    hasher.write(row);
-    hasher.finish()
+    list.meshes.as_ref().map_or(Ok(()), |scene| super::mesh::check(gpu, scene, &list.parts))
 }

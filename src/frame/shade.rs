@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
+use std::fmt::Write as _;
 
 use super::lights::Lights;
 use super::shadow::{ShadowMaps, Shadows};
@@ -30,10 +31,14 @@ pub struct ShadeKey {
     pub atoms: bool,
     /// Whether there are connectors.
     pub connectors: bool,
+    /// Whether there are triangles of meshes.
+    pub meshes: bool,
     /// The one material of all atoms, where there is only one.
     pub atom_material: Option<u32>,
     /// The one material of all connectors, where there is only one.
     pub connector_material: Option<u32>,
+    /// The one material of all parts of meshes, where there is only one.
+    pub part_material: Option<u32>,
     /// Whether a material has a hull outline.
     pub hulls: bool,
     /// Directional and point lights.
@@ -343,15 +348,24 @@ pub fn shade_module(key: &ShadeKey) -> Module {
         wgsl!("lib/view.wgsl"),
         wgsl!("lib/objects.wgsl"),
         wgsl!("lib/intersect.wgsl"),
+        if key.meshes { wgsl!("lib/mesh.wgsl") } else { wgsl!("lib/mesh_none.wgsl") },
         wgsl!("lib/surface.wgsl"),
         wgsl!("lib/lights.wgsl"),
         if key.shadows { wgsl!("lib/shadow.wgsl") } else { wgsl!("lib/shadow_none.wgsl") },
         wgsl!("lib/encode.wgsl"),
     ]);
     let mut bindings = format!(
-        "const ORTHOGRAPHIC: bool = {};\nconst ENCODE: bool = {};\nconst ATOMS: bool = {};\nconst CONNECTORS: bool = {};\nconst HULLS: bool = {};\n\
+        "const ORTHOGRAPHIC: bool = {};\nconst ENCODE: bool = {};\nconst ATOMS: bool = {};\nconst CONNECTORS: bool = {};\nconst MESHES: bool = {};\nconst HULLS: bool = {};\n\
          const SHADOWS: bool = {};\nconst LIGHT_COUNT: u32 = {}u;\nconst POINT_LIGHTS: bool = {};\n",
-        key.orthographic, key.encode, key.atoms, key.connectors, key.hulls, key.shadows, key.lights, key.point_lights
+        key.orthographic,
+        key.encode,
+        key.atoms,
+        key.connectors,
+        key.meshes,
+        key.hulls,
+        key.shadows,
+        key.lights,
+        key.point_lights
     );
     if key.shadows {
         bindings.push_str(
@@ -404,19 +418,29 @@ pub fn shade_module(key: &ShadeKey) -> Module {
 
 /// `material_of`: the material of an id, from memory only where it is not the same for all objects of a kind.
 fn material_function(key: &ShadeKey) -> String {
-    let source = |constant: Option<u32>, array: &str| match constant {
-        Some(material) => format!("{material}u"),
-        None => format!("{array}_at(id & INDEX_MASK).material"),
+    let index = "id & INDEX_MASK";
+    let source =
+        |constant: Option<u32>, lookup: &str| constant.map_or(lookup.to_owned(), |material| format!("{material}u"));
+    // Kinds that are there, each with its ids and the source of its material.
+    let kinds = [
+        (key.atoms, "ATOM", source(key.atom_material, &format!("atom_at({index}).material"))),
+        (key.connectors, "CONNECTOR", source(key.connector_material, &format!("connector_at({index}).material"))),
+        (key.meshes, "MESH", source(key.part_material, &format!("mesh_material({index})"))),
+    ];
+    let mut kinds: Vec<(&str, String)> =
+        kinds.into_iter().filter(|(drawn, ..)| *drawn).map(|(_, kind, source)| (kind, source)).collect();
+    let Some((_, last)) = kinds.pop() else {
+        return "fn material_of(id: u32) -> u32 {\n    return 0u;\n}\n".to_owned();
     };
-    let atoms = source(key.atom_material, "atom");
-    let connectors = source(key.connector_material, "connector");
-    let body = match (key.atoms, key.connectors) {
-        (true, true) if atoms == connectors && key.atom_material.is_some() => format!("    return {atoms};\n"),
-        (true, true) => format!(
-            "    let kind = id >> 29u;\n    if kind == KIND_ATOM || kind == KIND_ATOM_HULL {{ return {atoms}; }}\n    return {connectors};\n"
-        ),
-        (_, false) => format!("    return {atoms};\n"),
-        (false, true) => format!("    return {connectors};\n"),
-    };
+    let constants = [key.atom_material, key.connector_material, key.part_material];
+    let is_constant = |source: &str| constants.iter().flatten().any(|material| format!("{material}u") == source);
+    let mut body = String::new();
+    if !(is_constant(&last) && kinds.iter().all(|(_, source)| *source == last)) {
+        body.push_str(if kinds.is_empty() { "" } else { "    let kind = id >> 29u;\n" });
+        for (kind, source) in kinds {
+            let _ = writeln!(body, "    if kind == KIND_{kind} || kind == KIND_{kind}_HULL {{ return {source}; }}");
+        }
+    }
+    let _ = writeln!(body, "    return {last};");
     format!("fn material_of(id: u32) -> u32 {{\n{body}}}\n")
 }

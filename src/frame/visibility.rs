@@ -5,6 +5,7 @@
 
 use std::collections::BTreeMap;
 
+use super::mesh::MeshDraw;
 use super::objects::ObjectBuffers;
 use super::occlusion::{self, Reach};
 use super::view::View;
@@ -39,18 +40,27 @@ pub struct DrawnKinds {
     pub atoms: bool,
     /// Whether there are connectors.
     pub connectors: bool,
+    /// Whether there are triangles of meshes.
+    pub meshes: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     Atom,
     Connector,
+    Mesh,
+    /// Outlines around triangles; of mirrored parts, or of others.
+    Shell {
+        mirrored: bool,
+    },
 }
 
 /// Pipelines of the visibility pass. Builds only what is drawn.
 pub struct Visibility {
     /// Group 0 of every pass that reads the scene: view, objects, materials, orders.
     pub layout: wgpu::BindGroupLayout,
+    /// Whether the device numbers the triangles of a draw.
+    numbered: bool,
     pipelines: BTreeMap<(Kind, VisibilityKey), wgpu::RenderPipeline>,
 }
 
@@ -150,9 +160,14 @@ impl Visibility {
                 },
                 storage(4, wgpu::ShaderStages::VERTEX),
                 storage(5, wgpu::ShaderStages::VERTEX),
+                objects(6),
+                objects(7),
+                objects(8),
+                objects(9),
+                objects(10),
             ],
         });
-        Visibility { layout, pipelines: BTreeMap::new() }
+        Visibility { layout, numbered: gpu.numbers_triangles(), pipelines: BTreeMap::new() }
     }
 
     /// Binds objects, materials and the views of one eye; `reach` is what outlines add to the objects there. The order
@@ -169,7 +184,7 @@ impl Visibility {
         views: &[View],
         reach: Reach,
     ) -> Result<Option<SceneBindings>, GpuError> {
-        let Some([atoms, connectors]) = objects.views() else { return Ok(None) };
+        let Some([atoms, connectors, meshes @ ..]) = objects.views() else { return Ok(None) };
         let mut bytes = vec![0u8; views.len() * VIEW_STRIDE as usize];
         for (slot, view) in bytes.chunks_exact_mut(VIEW_STRIDE as usize).zip(views) {
             slot[..size_of::<View>()].copy_from_slice(bytemuck::bytes_of(view));
@@ -189,7 +204,7 @@ impl Visibility {
         let (Some(atom_order), Some(connector_order)) = (eye.atom_order.get(), eye.connector_order.get()) else {
             return Ok(None);
         };
-        let bound = vec![
+        let mut bound = vec![
             (0, Bound::Slice(view_buffer, size_of::<View>() as u64)),
             (1, Bound::View(atoms)),
             (2, Bound::View(connectors)),
@@ -197,6 +212,7 @@ impl Visibility {
             (4, Bound::Buffer(atom_order)),
             (5, Bound::Buffer(connector_order)),
         ];
+        bound.extend((6..).zip(meshes).map(|(binding, view)| (binding, Bound::View(view))));
         let group = eye.group.get(gpu, "scene", &self.layout, bound);
         Ok(Some(SceneBindings { group, num_drawn: eye.num_drawn }))
     }
@@ -206,7 +222,14 @@ impl Visibility {
     /// # Errors
     /// [`GpuError::Driver`] where a shader does not compile.
     pub fn prepare(&mut self, gpu: &Gpu, kinds: DrawnKinds, key: VisibilityKey) -> Result<(), GpuError> {
-        for (kind, drawn) in [(Kind::Atom, kinds.atoms), (Kind::Connector, kinds.connectors)] {
+        let shells = kinds.meshes && key.hulls;
+        for (kind, drawn) in [
+            (Kind::Atom, kinds.atoms),
+            (Kind::Connector, kinds.connectors),
+            (Kind::Mesh, kinds.meshes),
+            (Kind::Shell { mirrored: false }, shells),
+            (Kind::Shell { mirrored: true }, shells),
+        ] {
             if drawn && !self.pipelines.contains_key(&(kind, key)) {
                 let pipeline = self.build(gpu, kind, key)?;
                 self.pipelines.insert((kind, key), pipeline);
@@ -220,7 +243,7 @@ impl Visibility {
     /// # Errors
     /// [`GpuError::Driver`] where a shader does not compile.
     pub fn rebuilt(&self, gpu: &Gpu) -> Result<Visibility, GpuError> {
-        let mut fresh = Visibility { layout: self.layout.clone(), pipelines: BTreeMap::new() };
+        let mut fresh = Visibility { layout: self.layout.clone(), numbered: self.numbered, pipelines: BTreeMap::new() };
         for &(kind, key) in self.pipelines.keys() {
             let pipeline = fresh.build(gpu, kind, key)?;
             fresh.pipelines.insert((kind, key), pipeline);
@@ -229,10 +252,29 @@ impl Visibility {
     }
 
     fn build(&self, gpu: &Gpu, kind: Kind, key: VisibilityKey) -> Result<wgpu::RenderPipeline, GpuError> {
-        let module = visibility_module(kind == Kind::Atom, key).compile(gpu, "visibility")?;
+        let numbered = gpu.numbers_triangles();
+        let module = match kind {
+            Kind::Atom => visibility_module(true, key),
+            Kind::Connector => visibility_module(false, key),
+            Kind::Mesh => mesh_module(key, false, numbered),
+            Kind::Shell { .. } => mesh_module(key, true, numbered),
+        };
+        let module = module.compile(gpu, "visibility")?;
         let (vertex, fragment) = match kind {
             Kind::Atom => ("atom_vertex", "atom_fragment"),
             Kind::Connector => ("connector_vertex", "connector_fragment"),
+            Kind::Mesh | Kind::Shell { .. } => ("mesh_vertex", "mesh_fragment"),
+        };
+        let impostor = wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() };
+        let primitive = match kind {
+            Kind::Atom | Kind::Connector => impostor,
+            // Meshes may be open: both sides are drawn.
+            Kind::Mesh => wgpu::PrimitiveState::default(),
+            Kind::Shell { mirrored } => wgpu::PrimitiveState {
+                front_face: if mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
+                cull_mode: Some(wgpu::Face::Front),
+                ..Default::default()
+            },
         };
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("visibility"),
@@ -248,7 +290,7 @@ impl Visibility {
                 compilation_options: Default::default(),
                 buffers: &[],
             },
-            primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },
+            primitive,
             depth_stencil: Some(wgpu::DepthStencilState {
                 format: DEPTH_FORMAT,
                 depth_write_enabled: Some(true),
@@ -273,6 +315,7 @@ impl Visibility {
         &self,
         encoder: &mut wgpu::CommandEncoder,
         bindings: &SceneBindings,
+        objects: &ObjectBuffers,
         to: &VisibilityPass<'_>,
         timer: &mut Option<PassTimer>,
     ) {
@@ -305,7 +348,55 @@ impl Visibility {
                 pass.draw(0..4, 0..count);
             }
         }
+        let Some((draws, indices)) = objects.meshes.draws() else { return };
+        pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+        let mut draw_all = |kind: Kind, is_drawn: &dyn Fn(&MeshDraw) -> bool| {
+            let Some(pipeline) = self.pipelines.get(&(kind, to.key)) else { return };
+            pass.set_pipeline(pipeline);
+            for draw in draws.iter().filter(|draw| is_drawn(draw)) {
+                if self.numbered {
+                    pass.draw_indexed(draw.indices.clone(), 0, draw.runs.clone());
+                } else {
+                    // Vertices are fetched by their number in the run.
+                    pass.draw(0..draw.indices.end - draw.indices.start, draw.runs.clone());
+                }
+            }
+        };
+        draw_all(Kind::Mesh, &|_| true);
+        if to.key.hulls {
+            for mirrored in [false, true] {
+                draw_all(Kind::Shell { mirrored }, &|draw| draw.mirrored == mirrored);
+            }
+        }
     }
+}
+
+/// The WGSL of the triangles' visibility, or of the shell that is their outline. `numbered`: the device numbers the
+/// triangles of a draw.
+pub fn mesh_module(key: VisibilityKey, shell: bool, numbered: bool) -> Module {
+    let mut module = Module::default();
+    if numbered {
+        module.add_generated("extensions", "enable primitive_index;".to_owned());
+    }
+    module.add(wgsl!("lib/view.wgsl"));
+    module.add(wgsl!("lib/objects.wgsl"));
+    module.add(wgsl!("lib/mesh.wgsl"));
+    module.add(if key.light { wgsl!("lib/seen_light_mesh.wgsl") } else { wgsl!("lib/seen_camera_mesh.wgsl") });
+    module.add(wgsl!("objects/mesh.wgsl"));
+    let (parameter, index) = match numbered {
+        true => (", @builtin(primitive_index) triangle: u32", "in.id + triangle"),
+        false => ("", "in.id"),
+    };
+    module.add_generated(
+        "mesh options",
+        format!(
+            "const SHELL: bool = {shell};\nconst NUMBERED: bool = {numbered};\nconst ORTHOGRAPHIC: bool = {};\n\
+             @fragment\nfn mesh_fragment(in: MeshVarying{parameter}) -> VisibilityOut {{\n    \
+             return mesh_out(in.position, {index});\n}}",
+            key.orthographic
+        ),
+    );
+    module
 }
 
 /// The WGSL of the atoms' or connectors' visibility.

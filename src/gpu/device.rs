@@ -91,7 +91,8 @@ impl Gpu {
         }))
         .map_err(|_| GpuError::NoAdapter)?;
         let info = adapter.get_info();
-        let wanted = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::FLOAT32_BLENDABLE;
+        let wanted =
+            wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::FLOAT32_BLENDABLE | wgpu::Features::PRIMITIVE_INDEX;
         let available = adapter.limits();
         let limits = wgpu::Limits {
             max_texture_dimension_2d: available.max_texture_dimension_2d,
@@ -150,6 +151,11 @@ impl Gpu {
     /// Whether 32-bit float targets add up in the blender.
     pub fn adds_float32(&self) -> bool {
         self.device.features().contains(wgpu::Features::FLOAT32_BLENDABLE)
+    }
+
+    /// Whether the triangles of a draw have numbers in fragment shaders.
+    pub fn numbers_triangles(&self) -> bool {
+        self.device.features().contains(wgpu::Features::PRIMITIVE_INDEX)
     }
 
     /// Refuses what is larger than the largest storage binding.
@@ -218,6 +224,13 @@ impl Gpu {
     pub fn write_buffer(&self, buffer: &wgpu::Buffer, offset: u64, bytes: &[u8]) {
         self.counting.write(bytes.len());
         self.queue.write_buffer(buffer, offset, bytes);
+    }
+
+    /// Carries pending writes out, so that their copies do not pile up in memory.
+    pub fn flush_writes(&self) {
+        let submission_index = self.queue.submit([]);
+        // A lost device is told by the next frame.
+        let _ = self.device.poll(wgpu::PollType::Wait { submission_index: Some(submission_index), timeout: None });
     }
 
     /// Writes to a texture.

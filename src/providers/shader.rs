@@ -19,6 +19,8 @@ pub struct Assignment {
     pub atoms: Vec<Option<u32>>,
     /// For each bond. It is hidden with either of its atoms.
     pub connectors: Vec<Option<u32>>,
+    /// For each part of meshes.
+    pub parts: Vec<Option<u32>>,
 }
 
 /// What draws the objects of one molecule in one style. A clone costs next to nothing.
@@ -147,6 +149,6 @@ impl Targets {
         };
         let connectors = classes.of_bond.iter().map(connector).collect();
         let atoms = classes.of_atom.iter().map(|class| atoms[*class as usize]).collect();
-        Assignment { atoms, connectors }
+        Assignment { atoms, connectors, parts: vec![Some(self.basic as u32); 100_000] }
     }
 }

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{AddressSpace, Handle, Type, TypeInner};
 use restyle::frame::{
-    ShadeKey, ShaderNeeds, VisibilityKey, aov_module, resolve_module, shade_module, visibility_module,
+    ShadeKey, ShaderNeeds, VisibilityKey, aov_module, mesh_module, resolve_module, shade_module, visibility_module,
 };
 use restyle::gpu::Module;
 use restyle::shading::SHADERS;
@@ -53,9 +53,16 @@ pub fn survey() -> &'static Survey {
                     let key = VisibilityKey { hulls, orthographic, light };
                     survey.read(&format!("visibility of atoms, {key:?}"), &visibility_module(true, key));
                     survey.read(&format!("visibility of connectors, {key:?}"), &visibility_module(false, key));
+                    for (shell, numbered) in [(false, false), (false, true), (true, false), (true, true)] {
+                        let name = format!("visibility of meshes, shell {shell}, numbered {numbered}, {key:?}");
+                        survey.read(&name, &mesh_module(key, shell, numbered));
+                    }
                 }
             }
-            survey.read(&format!("aov, orthographic {orthographic}"), &aov_module(orthographic));
+            for meshes in [false, true] {
+                let name = format!("aov, orthographic {orthographic}, meshes {meshes}");
+                survey.read(&name, &aov_module(orthographic, meshes));
+            }
         }
         survey.read("resolve", &resolve_module());
         for key in shade_keys() {
@@ -83,8 +90,9 @@ impl Survey {
                 return mistake(error.location(&text).map(|at| at.line_number), error.message().to_owned());
             }
         };
-        // Half floats are packed in 32 bits, which every adapter unpacks; nothing else is asked of one.
-        let mut validator = Validator::new(ValidationFlags::all(), Capabilities::SHADER_FLOAT16_IN_FLOAT32);
+        // Half floats are packed in 32 bits, which every adapter unpacks. Where triangles have no numbers, other modules do.
+        let asked = Capabilities::SHADER_FLOAT16_IN_FLOAT32 | Capabilities::PRIMITIVE_INDEX;
+        let mut validator = Validator::new(ValidationFlags::all(), asked);
         if let Err(error) = validator.validate(&parsed) {
             let mut message = error.as_inner().to_string();
             let mut cause = error.as_inner().source();
@@ -135,7 +143,7 @@ fn collect(parsed: &naga::Module, ty: Handle<Type>, into: &mut BTreeSet<Handle<T
 }
 
 /// How many yes-or-no questions a [`ShadeKey`] answers, beside its list of shaders.
-const NUM_SWITCHES: u32 = 13;
+const NUM_SWITCHES: u32 = 15;
 
 /// Answers, one a bit, of which at most one differs from the rest.
 fn covering_switches() -> impl Iterator<Item = u32> {
@@ -169,6 +177,8 @@ fn shade_key(shaders: u32, switches: u32, features: u32) -> ShadeKey {
         connectors: on(1),
         atom_material: on(2).then_some(0),
         connector_material: on(3).then_some(1),
+        meshes: on(13),
+        part_material: on(14).then_some(2),
         hulls: on(4),
         lights: if on(5) { 8 } else { 0 },
         point_lights: on(6),

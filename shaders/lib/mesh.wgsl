@@ -1,0 +1,198 @@
+// Triangles of meshes. Shapes lie once in the textures of vertices and triangles; parts place them; a run is what one
+// instance of a draw covers: one part of a shared shape, or a row of parts whose shapes follow each other.
+// The index of an id is counted through all runs, each from a multiple of MESH_PAGE: `mesh_pages` says whose it is.
+
+struct MeshVertex {
+    // In the shape's coordinates.
+    position: vec3<f32>,
+    // Octahedral, 16 + 16 bits.
+    normal: u32,
+    // Outline vector: octahedral, 12 + 12 bits, and 8 bits of length up to 4.
+    hull: u32,
+    // sRGB, 8 bits each, and 255 where the file has a colour.
+    color: u32,
+    // Which part of its run.
+    part: u32,
+    _pad0: u32,
+}
+
+struct MeshPart {
+    // Rows of the 3x4 matrix from the shape's to world coordinates.
+    row_x: vec4<f32>,
+    row_y: vec4<f32>,
+    row_z: vec4<f32>,
+    // Linear RGB as half floats.
+    color: vec2<u32>,
+    material: u32,
+    // Of a sphere around it, in scene units.
+    radius: f32,
+}
+
+struct MeshRun {
+    // Index of its first triangle, as ids count.
+    first_id: u32,
+    // Its place in the texture of triangles.
+    first_triangle: u32,
+    // Its first part.
+    first_part: u32,
+    _pad0: u32,
+}
+
+const MESH_PAGE_BITS: u32 = 8u;
+
+fn mesh_vertex_at(index: u32) -> MeshVertex {
+    let place = object_texel(mesh_vertices, 2u * index);
+    let look = object_texel(mesh_vertices, 2u * index + 1u);
+    return MeshVertex(bitcast<vec3<f32>>(place.xyz), place.w, look.x, look.y, look.z, look.w);
+}
+
+fn mesh_part_at(index: u32) -> MeshPart {
+    let x = bitcast<vec4<f32>>(object_texel(mesh_parts, 4u * index));
+    let y = bitcast<vec4<f32>>(object_texel(mesh_parts, 4u * index + 1u));
+    let z = bitcast<vec4<f32>>(object_texel(mesh_parts, 4u * index + 2u));
+    let look = object_texel(mesh_parts, 4u * index + 3u);
+    return MeshPart(x, y, z, look.xy, look.z, bitcast<f32>(look.w));
+}
+
+fn mesh_run_at(index: u32) -> MeshRun {
+    let run = object_texel(mesh_runs, index);
+    return MeshRun(run.x, run.y, run.z, run.w);
+}
+
+// The vertices of the triangle that the index of an id names, and its part.
+struct MeshCorners {
+    vertices: vec3<u32>,
+    part: u32,
+}
+
+fn mesh_corners(index: u32) -> MeshCorners {
+    let page = index >> MESH_PAGE_BITS;
+    let run = mesh_run_at(object_texel(mesh_pages, page >> 2u)[page & 3u]);
+    let triangle = object_texel(mesh_triangles, run.first_triangle + index - run.first_id);
+    return MeshCorners(triangle.xyz, run.first_part + triangle.w);
+}
+
+fn mesh_material(index: u32) -> u32 {
+    return object_texel(mesh_parts, 4u * mesh_corners(index).part + 3u).z;
+}
+
+fn mesh_to_world(part: MeshPart, position: vec3<f32>) -> vec3<f32> {
+    let place = vec4<f32>(position, 1.0);
+    return vec3<f32>(dot(part.row_x, place), dot(part.row_y, place), dot(part.row_z, place));
+}
+
+// Turns a normal as the part's matrix does, by its cofactors, which exist for every matrix. Not of unit length.
+fn mesh_normal_to_world(part: MeshPart, normal: vec3<f32>) -> vec3<f32> {
+    let x = cross(part.row_y.xyz, part.row_z.xyz);
+    let y = cross(part.row_z.xyz, part.row_x.xyz);
+    let z = cross(part.row_x.xyz, part.row_y.xyz);
+    let turned = vec3<f32>(dot(x, normal), dot(y, normal), dot(z, normal));
+    return select(turned, -turned, dot(part.row_x.xyz, x) < 0.0);
+}
+
+// The unit vector of octahedral coordinates in -1..1.
+fn from_octahedral(place: vec2<f32>) -> vec3<f32> {
+    let z = 1.0 - abs(place.x) - abs(place.y);
+    let fold = max(-z, 0.0);
+    let folded = place - select(vec2<f32>(-fold), vec2<f32>(fold), place >= vec2<f32>(0.0));
+    return normalize(vec3<f32>(folded, z));
+}
+
+fn unpack_normal(bits: u32) -> vec3<f32> {
+    let steps = vec2<f32>(f32(bits & 0xffffu), f32(bits >> 16u));
+    return from_octahedral(steps * (2.0 / 65534.0) - 1.0);
+}
+
+fn unpack_hull(bits: u32) -> vec3<f32> {
+    let steps = vec2<f32>(f32(bits & 0xfffu), f32(bits >> 12u & 0xfffu));
+    return from_octahedral(steps * (2.0 / 4094.0) - 1.0) * (f32(bits >> 24u) * (4.0 / 255.0));
+}
+
+fn linear_from_srgb(value: f32) -> f32 {
+    return select(pow((value + 0.055) / 1.055, 2.4), value / 12.92, value <= 0.04045);
+}
+
+// Linear RGB of a vertex; white where the file has no colours.
+fn unpack_vertex_color(bits: u32) -> vec3<f32> {
+    let color = unpack4x8unorm(bits);
+    if color.a == 0.0 { return vec3<f32>(1.0); }
+    return vec3<f32>(linear_from_srgb(color.r), linear_from_srgb(color.g), linear_from_srgb(color.b));
+}
+
+// A point of a triangle, in view space.
+struct MeshPoint {
+    t: f32,
+    // Unit, interpolated between the vertices, turned to the viewer.
+    normal: vec3<f32>,
+    base_color: vec3<f32>,
+    // Change of the normal for a step along the triangle's plane: dot with the step gives the shares of the two edges.
+    share_b: vec3<f32>,
+    share_c: vec3<f32>,
+    normal_b: vec3<f32>,
+    normal_c: vec3<f32>,
+}
+
+// The triangle that the index of an id names, where a ray meets it. On its border and on edges seen from the side the ray
+// may round to a miss: the nearest point of the triangle is then within rounding of the surface.
+fn mesh_point(ray: Ray, index: u32) -> MeshPoint {
+    let corners = mesh_corners(index);
+    let part = mesh_part_at(corners.part);
+    let va = mesh_vertex_at(corners.vertices.x);
+    let vb = mesh_vertex_at(corners.vertices.y);
+    let vc = mesh_vertex_at(corners.vertices.z);
+    let a = to_view(view, mesh_to_world(part, va.position));
+    let along_b = to_view(view, mesh_to_world(part, vb.position)) - a;
+    let along_c = to_view(view, mesh_to_world(part, vc.position)) - a;
+    // In units of the longer edge, so that squares of squares neither vanish nor overflow.
+    let scale = 1.0 / max(max(length(along_b), length(along_c)), 1e-30);
+    let b = along_b * scale;
+    let c = along_c * scale;
+    let across = cross(b, c);
+    let area_squared = max(dot(across, across), 1e-30);
+    let from_a = (ray.origin - a) * scale;
+    // [Moller1997 §2]
+    let facing = dot(ray.direction, across);
+    let inverse = 1.0 / select(min(facing, -1e-20), max(facing, 1e-20), facing >= 0.0);
+    let around = cross(from_a, ray.direction);
+    var share_b = clamp(-dot(around, c) * inverse, 0.0, 1.0);
+    var share_c = clamp(dot(around, b) * inverse, 0.0, 1.0);
+    let sum = max(share_b + share_c, 1.0);
+    share_b /= sum;
+    share_c /= sum;
+
+    var point: MeshPoint;
+    point.t = -(a.z + share_b * along_b.z + share_c * along_c.z);
+    let to_view_normal = mat3x3<f32>(view.view_from_world[0].xyz, view.view_from_world[1].xyz, view.view_from_world[2].xyz);
+    let na = to_view_normal * normalize(mesh_normal_to_world(part, unpack_normal(va.normal)));
+    let nb = to_view_normal * normalize(mesh_normal_to_world(part, unpack_normal(vb.normal)));
+    let nc = to_view_normal * normalize(mesh_normal_to_world(part, unpack_normal(vc.normal)));
+    let mixed = na + share_b * (nb - na) + share_c * (nc - na);
+    let inverse_length = inverseSqrt(max(dot(mixed, mixed), 1e-12));
+    // To the side of the triangle that is seen.
+    let outwards = select(across, -across, facing > 0.0);
+    let turned = select(inverse_length, -inverse_length, dot(mixed, outwards) < 0.0);
+    point.normal = mixed * turned;
+    // An interpolated normal may lean away where the triangle does not: it is then seen from the side.
+    let away = dot(point.normal, ray.direction);
+    if away > 0.0 {
+        point.normal = normalize(point.normal - ray.direction * (away * 1.001 / dot(ray.direction, ray.direction)));
+    }
+    point.normal_b = (nb - na) * turned;
+    point.normal_c = (nc - na) * turned;
+    point.share_b = cross(c, across) * (scale / area_squared);
+    point.share_c = cross(across, b) * (scale / area_squared);
+    point.base_color = unpack_linear(part.color);
+    // The spare half says whether the file's own colours count.
+    if (part.color.y >> 16u) != 0u {
+        let ca = unpack_vertex_color(va.color);
+        point.base_color *= ca + share_b * (unpack_vertex_color(vb.color) - ca)
+            + share_c * (unpack_vertex_color(vc.color) - ca);
+    }
+    return point;
+}
+
+// Change of the unit normal for a step along the triangle's plane.
+fn mesh_normal_step(point: MeshPoint, step: vec3<f32>) -> vec3<f32> {
+    let change = point.normal_b * dot(point.share_b, step) + point.normal_c * dot(point.share_c, step);
+    return change - point.normal * dot(point.normal, change);
+}

@@ -1,0 +1,392 @@
+//! Meshes on the device: shapes once for each scene, parts and draws for each style.
+//!
+//! Shapes that one part places follow each other in a row and are one draw, however many there are; a shape with more
+//! places is one draw of as many instances. Ids count triangles through all of them, so that a pixel knows shape and
+//! place; `shaders/lib/mesh.wgsl` finds them again.
+
+use std::ops::Range;
+use std::sync::{Arc, Weak};
+
+use glam::Affine3A;
+
+use super::texels::{self, KeptTexture, OBJECT_ROW};
+use crate::gpu::{Gpu, GpuError};
+use crate::gpu_struct;
+use crate::scene::{Assembly, Scene};
+
+gpu_struct! {
+    "lib/mesh.wgsl",
+    /// See `shaders/lib/mesh.wgsl`.
+    pub struct MeshVertex {
+        /// In the shape's coordinates.
+        pub position: [f32; 3],
+        /// Packed normal.
+        pub normal: u32,
+        /// Packed outline vector.
+        pub hull: u32,
+        /// sRGB and 255, or 0.
+        pub color: u32,
+        /// Which part of its run.
+        pub part: u32,
+        /// Padding.
+        pub _pad0: u32,
+    }
+}
+
+gpu_struct! {
+    "lib/mesh.wgsl",
+    /// A part as it is drawn.
+    pub struct MeshPart {
+        /// Row of the matrix to world x.
+        pub row_x: [f32; 4],
+        /// To world y.
+        pub row_y: [f32; 4],
+        /// To world z.
+        pub row_z: [f32; 4],
+        /// Linear RGB as half floats.
+        pub color: [u32; 2],
+        /// Index into the materials.
+        pub material: u32,
+        /// Of a sphere around it, in scene units.
+        pub radius: f32,
+    }
+}
+
+gpu_struct! {
+    "lib/mesh.wgsl",
+    /// What one instance of a draw covers.
+    pub struct MeshRun {
+        /// Index of its first triangle, as ids count.
+        pub first_id: u32,
+        /// Its place in the texture of triangles.
+        pub first_triangle: u32,
+        /// Its first part.
+        pub first_part: u32,
+        /// Padding.
+        pub _pad0: u32,
+    }
+}
+
+impl MeshPart {
+    /// A part of this placement, colour and material; `radius` is its sphere's, in the shape's units.
+    pub fn new(world_from_shape: &Affine3A, color: [u32; 2], material: u32, radius: f32) -> MeshPart {
+        let matrix = world_from_shape.matrix3;
+        let shift = world_from_shape.translation;
+        let row = |axis: usize| {
+            let row = matrix.row(axis);
+            [row.x, row.y, row.z, shift[axis]]
+        };
+        let scale = matrix.determinant().abs().cbrt();
+        MeshPart { row_x: row(0), row_y: row(1), row_z: row(2), color, material, radius: radius * scale }
+    }
+}
+
+/// Triangles on a page of ids: `MESH_PAGE_BITS` in `shaders/lib/mesh.wgsl`.
+const PAGE: u64 = 1 << 8;
+
+/// Ids have 29 bits for the index.
+const MOST_IDS: u64 = 1 << 29;
+
+/// A draw of the rasteriser.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MeshDraw {
+    /// Indices, three a triangle.
+    pub indices: Range<u32>,
+    /// Rows of the texture of runs.
+    pub runs: Range<u32>,
+    /// Whether its parts are mirrored.
+    pub mirrored: bool,
+}
+
+/// Where shapes and parts lie, found from the scene alone.
+#[derive(Debug, Default)]
+struct Layout {
+    /// Shapes in the order in which they lie.
+    shapes: Vec<Placed>,
+    /// How many of them follow each other as one run: those with one place.
+    num_single: usize,
+    /// The parts in the order of their rows, as indices into the scene's.
+    parts: Vec<u32>,
+    num_vertices: u64,
+    num_triangles: u64,
+}
+
+/// A shape with its places.
+#[derive(Debug)]
+struct Placed {
+    shape: u32,
+    first_triangle: u32,
+    num_triangles: u32,
+    /// Rows of its parts.
+    parts: Range<u32>,
+}
+
+impl Layout {
+    fn new(assembly: &Assembly) -> Layout {
+        let mut parts_of: Vec<Vec<u32>> = vec![Vec::new(); assembly.shapes.len()];
+        for (index, part) in (0..).zip(&assembly.parts) {
+            parts_of[part.shape as usize].push(index);
+        }
+        let mut order: Vec<u32> = (0..assembly.shapes.len() as u32).collect();
+        order.retain(|&shape| !parts_of[shape as usize].is_empty());
+        // Single places first, in the order of the file.
+        order.sort_by_key(|&shape| parts_of[shape as usize].len() > 1);
+        let mut layout = Layout::default();
+        layout.num_single = order.iter().filter(|&&shape| parts_of[shape as usize].len() == 1).count();
+        for shape in order {
+            let of = &assembly.shapes[shape as usize];
+            let first = layout.parts.len() as u32;
+            layout.parts.append(&mut parts_of[shape as usize]);
+            layout.shapes.push(Placed {
+                shape,
+                first_triangle: layout.num_triangles as u32,
+                num_triangles: of.triangles.len() as u32,
+                parts: first..layout.parts.len() as u32,
+            });
+            layout.num_vertices += of.positions.len() as u64;
+            layout.num_triangles += of.triangles.len() as u64;
+        }
+        layout
+    }
+}
+
+/// Rows of runs and pages, and the draws that they are for.
+#[derive(Debug, Default, PartialEq)]
+struct Draws {
+    draws: Vec<MeshDraw>,
+    runs: Vec<MeshRun>,
+    /// For each page of ids its run.
+    pages: Vec<u32>,
+    num_triangles: u64,
+}
+
+impl Draws {
+    /// The draws of the parts that are drawn.
+    ///
+    /// # Errors
+    /// [`GpuError::TooMany`] beyond the ids of 29 bits.
+    fn new(layout: &Layout, assembly: &Assembly, is_drawn: impl Fn(u32) -> bool) -> Result<Draws, GpuError> {
+        let mut draws = Draws::default();
+        let mut next_id = 0u64;
+        let mut run = |draws: &mut Draws, first_triangle: u32, num_triangles: u32, first_part: u32| {
+            let row = draws.runs.len() as u32;
+            let first_id = next_id as u32;
+            next_id += u64::from(num_triangles).next_multiple_of(PAGE);
+            if next_id > MOST_IDS {
+                let bytes = |count: u64| count * size_of::<[u32; 4]>() as u64;
+                return Err(GpuError::TooMany {
+                    what: "triangles",
+                    count: next_id as usize,
+                    bytes: bytes(next_id),
+                    limit: bytes(MOST_IDS),
+                });
+            }
+            draws.pages.resize((next_id / PAGE) as usize, row);
+            draws.runs.push(MeshRun { first_id, first_triangle, first_part, _pad0: 0 });
+            draws.num_triangles += u64::from(num_triangles);
+            Ok(row)
+        };
+        let indices = |first_triangle: u32, count: u32| 3 * first_triangle..3 * (first_triangle + count);
+
+        // Shapes with one place: as few draws as hidden parts between them allow.
+        let (single, shared) = layout.shapes.split_at(layout.num_single);
+        let visible =
+            |placed: &&Placed| placed.num_triangles > 0 && is_drawn(layout.parts[placed.parts.start as usize]);
+        let mirrored = |row: u32| is_mirrored(assembly, layout.parts[row as usize]);
+        for group in
+            single.chunk_by(|a, b| visible(&a) == visible(&b) && mirrored(a.parts.start) == mirrored(b.parts.start))
+        {
+            let (Some(first), Some(last)) = (group.first(), group.last()) else { continue };
+            if !visible(&first) {
+                continue;
+            }
+            let count = last.first_triangle + last.num_triangles - first.first_triangle;
+            // Vertices count their parts from the first of all.
+            let row = run(&mut draws, first.first_triangle, count, 0)?;
+            draws.draws.push(MeshDraw {
+                indices: indices(first.first_triangle, count),
+                runs: row..row + 1,
+                mirrored: mirrored(first.parts.start),
+            });
+        }
+        for placed in shared.iter().filter(|placed| placed.num_triangles > 0) {
+            for side in [false, true] {
+                let start = draws.runs.len() as u32;
+                for part in placed.parts.clone() {
+                    if is_drawn(layout.parts[part as usize]) && mirrored(part) == side {
+                        run(&mut draws, placed.first_triangle, placed.num_triangles, part)?;
+                    }
+                }
+                let end = draws.runs.len() as u32;
+                if end > start {
+                    draws.draws.push(MeshDraw {
+                        indices: indices(placed.first_triangle, placed.num_triangles),
+                        runs: start..end,
+                        mirrored: side,
+                    });
+                }
+            }
+        }
+        Ok(draws)
+    }
+}
+
+fn is_mirrored(assembly: &Assembly, part: u32) -> bool {
+    assembly.parts[part as usize].world_from_shape.matrix3.determinant() < 0.0
+}
+
+/// The meshes of a scene on the device.
+pub struct MeshBuffers {
+    /// What scene the shapes are of.
+    scene: Weak<Scene>,
+    layout: Layout,
+    vertices: KeptTexture,
+    triangles: KeptTexture,
+    indices: Option<wgpu::Buffer>,
+    parts: KeptTexture,
+    runs: KeptTexture,
+    pages: KeptTexture,
+    draws: Draws,
+}
+
+impl Default for MeshBuffers {
+    fn default() -> MeshBuffers {
+        MeshBuffers {
+            scene: Weak::new(),
+            layout: Layout::default(),
+            vertices: KeptTexture::new("mesh vertices"),
+            triangles: KeptTexture::new("mesh triangles"),
+            indices: None,
+            parts: KeptTexture::new("mesh parts"),
+            runs: KeptTexture::new("mesh runs"),
+            pages: KeptTexture::new("mesh pages"),
+            draws: Draws::default(),
+        }
+    }
+}
+
+impl MeshBuffers {
+    /// Replaces the parts and, for another scene, the shapes. `parts` has an entry for each part of the scene, none where
+    /// it is hidden. On an error the former content stays.
+    ///
+    /// # Errors
+    /// [`GpuError::TooMany`] beyond the largest texture, or beyond the ids of 29 bits.
+    pub fn set(&mut self, gpu: &Gpu, scene: &Arc<Scene>, parts: &[Option<MeshPart>]) -> Result<(), GpuError> {
+        let assembly = &scene.assembly;
+        check(gpu, scene, parts)?;
+        let is_drawn = |part: u32| parts.get(part as usize).is_some_and(Option::is_some);
+        if !Weak::ptr_eq(&self.scene, &Arc::downgrade(scene)) {
+            let layout = Layout::new(assembly);
+            self.draws = Draws::default();
+            self.upload(gpu, assembly, &layout);
+            self.layout = layout;
+            self.scene = Arc::downgrade(scene);
+        }
+        let draws = Draws::new(&self.layout, assembly, is_drawn)?;
+        let hidden = <MeshPart as bytemuck::Zeroable>::zeroed();
+        let rows: Vec<MeshPart> = self
+            .layout
+            .parts
+            .iter()
+            .map(|&part| parts.get(part as usize).copied().flatten().unwrap_or(hidden))
+            .collect();
+        self.parts.set(gpu, bytemuck::cast_slice(&rows));
+        if draws != self.draws {
+            self.runs.set(gpu, bytemuck::cast_slice(&draws.runs));
+            let mut pages = draws.pages.clone();
+            pages.resize(pages.len().next_multiple_of(4), 0);
+            self.pages.set(gpu, bytemuck::cast_slice(&pages));
+            self.draws = draws;
+        }
+        Ok(())
+    }
+
+    /// Forgets the scene's meshes.
+    pub fn clear(&mut self) {
+        *self = MeshBuffers::default();
+    }
+
+    /// Writes the shapes, piece by piece, so that no second copy of them is made in memory.
+    fn upload(&mut self, gpu: &Gpu, assembly: &Assembly, layout: &Layout) {
+        let mut vertices = self.vertices.writer(gpu, layout.num_vertices * 2);
+        let mut triangles = self.triangles.writer(gpu, layout.num_triangles);
+        let size = (layout.num_triangles * 12).max(16);
+        let buffer = gpu.empty_buffer("mesh indices", size, wgpu::BufferUsages::INDEX | wgpu::BufferUsages::COPY_DST);
+        let mut first_vertex = 0u32;
+        for (number, placed) in layout.shapes.iter().enumerate() {
+            let shape = &assembly.shapes[placed.shape as usize];
+            // Vertices of single places know their part; a shared shape has one part for each run.
+            let part = if number < layout.num_single { placed.parts.start } else { 0 };
+            for (index, position) in shape.positions.iter().enumerate() {
+                let color = shape.colors.get(index).map_or(0, |[r, g, b]| u32::from_le_bytes([*r, *g, *b, 255]));
+                vertices.push(bytemuck::bytes_of(&MeshVertex {
+                    position: position.to_array(),
+                    normal: shape.normals.get(index).copied().unwrap_or(0),
+                    hull: shape.hulls.get(index).copied().unwrap_or(0),
+                    color,
+                    part,
+                    _pad0: 0,
+                }));
+            }
+            let mut offset = u64::from(placed.first_triangle) * 12;
+            for chunk in shape.triangles.chunks(1 << 16) {
+                let moved: Vec<[u32; 3]> = chunk.iter().map(|triangle| triangle.map(|v| v + first_vertex)).collect();
+                for [a, b, c] in &moved {
+                    triangles.push(bytemuck::bytes_of(&[*a, *b, *c, part]));
+                }
+                gpu.write_buffer(&buffer, offset, bytemuck::cast_slice(&moved));
+                offset += moved.len() as u64 * 12;
+                gpu.flush_writes();
+            }
+            first_vertex += shape.positions.len() as u32;
+        }
+        vertices.finish();
+        triangles.finish();
+        gpu.flush_writes();
+        self.indices = Some(buffer);
+    }
+
+    /// Vertices, triangles, parts, runs and pages to bind; none without meshes.
+    pub fn views(&self) -> Option<[wgpu::TextureView; 5]> {
+        Some([self.vertices.view()?, self.triangles.view()?, self.parts.view()?, self.runs.view()?, self.pages.view()?])
+    }
+
+    /// The draws, and the indices that they draw by.
+    pub fn draws(&self) -> Option<(&[MeshDraw], &wgpu::Buffer)> {
+        Some((&self.draws.draws, self.indices.as_ref()?))
+    }
+
+    /// Triangles that are drawn, those of hidden parts not counted.
+    pub fn num_triangles(&self) -> u64 {
+        self.draws.num_triangles
+    }
+
+    /// Bytes on the device.
+    pub fn bytes(&self) -> u64 {
+        let textures = [&self.vertices, &self.triangles, &self.parts, &self.runs, &self.pages];
+        textures.iter().map(|texture| texture.bytes()).sum::<u64>()
+            + self.indices.as_ref().map_or(0, wgpu::Buffer::size)
+    }
+}
+
+/// Refuses meshes that do not fit the device.
+///
+/// # Errors
+/// [`GpuError::TooMany`] with what does not fit.
+pub fn check(gpu: &Gpu, scene: &Scene, parts: &[Option<MeshPart>]) -> Result<(), GpuError> {
+    let assembly = &scene.assembly;
+    let vertices: u64 = assembly.shapes.iter().map(|shape| shape.positions.len() as u64).sum();
+    let triangles: u64 = assembly.shapes.iter().map(|shape| shape.triangles.len() as u64).sum();
+    let limits = gpu.device.limits();
+    let texture = u64::from(limits.max_texture_dimension_2d) * u64::from(OBJECT_ROW) * texels::TEXEL_BYTES as u64;
+    for (what, count, bytes, limit) in [
+        ("vertices", vertices, vertices * size_of::<MeshVertex>() as u64, texture),
+        ("triangles", triangles, triangles * 16, texture.min(limits.max_buffer_size / 3 * 4)),
+        ("parts", parts.len() as u64, size_of_val(parts) as u64, texture),
+    ] {
+        if bytes > limit {
+            return Err(GpuError::TooMany { what, count: count as usize, bytes, limit });
+        }
+    }
+    Ok(())
+}
