@@ -62,6 +62,16 @@ pub enum SceneError {
         /// What is wrong, and the way out after a semicolon.
         what: String,
     },
+    /// Bytes contradict a binary format so that nothing can be drawn safely.
+    #[error("{file}: byte {byte}: {what}")]
+    MalformedAt {
+        /// The file as the caller named it.
+        file: String,
+        /// Place in the file, from 0.
+        byte: u64,
+        /// What is wrong, and the way out after a semicolon.
+        what: String,
+    },
     /// The file is of a kind that this reader does not read.
     #[error("{file}: {what}")]
     Unsupported {

@@ -60,6 +60,22 @@ note_kinds! {
     TrailingText => "line" / "lines": "after the atoms not read",
     /// Positions that single precision rounds visibly.
     CoarsePositions => "molecule" / "molecules": "so wide that positions are rounded",
+    /// A face with a vertex that is NaN, infinite or no number.
+    FaceNowhere => "face" / "faces": "left out: a coordinate is no number",
+    /// A face that names a vertex that the file does not have.
+    FaceOutOfRange => "face" / "faces": "left out: a vertex that the file does not have",
+    /// A face of no, one or two vertices.
+    ShortFace => "face" / "faces": "left out: fewer than three vertices",
+    /// A polygon that no way of cutting covers.
+    CrossedPolygon => "polygon" / "polygons": "crossing itself or without area: cut as well as it can be",
+    /// A word or line of a mesh file that says nothing to this reader.
+    UnknownWord => "word" / "words": "not understood, skipped",
+    /// A count in a mesh file that is not that of what follows.
+    CountWrong => "count" / "counts": "not that of what follows: what is there is drawn",
+    /// Bytes after the last thing that a binary mesh file announces.
+    TrailingBytes => "byte" / "bytes": "at the end not read",
+    /// A mesh file that ends inside something.
+    MeshCut => "place" / "places": "where the file ends too early: what is whole is drawn",
 }
 
 /// One thing that was mended, guessed or skipped.

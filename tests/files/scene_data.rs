@@ -194,7 +194,8 @@ fn files_of_other_formats_are_refused() {
             let path = entry.expect("readable").path();
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
             let is_large = path.metadata().is_ok_and(|metadata| metadata.len() > 8 << 20);
-            if is_ours(&name) || !path.is_file() || is_large {
+            let is_mesh = ["stl", "obj", "ply", "off"].iter().any(|end| name.to_ascii_lowercase().ends_with(end));
+            if is_ours(&name) || is_mesh || !path.is_file() || is_large {
                 continue;
             }
             let error = Scene::load(&path).expect_err(&name);
@@ -202,5 +203,5 @@ fn files_of_other_formats_are_refused() {
             num_refused += 1;
         }
     }
-    assert!(num_refused > 100, "{num_refused}");
+    assert!(num_refused > 30, "{num_refused}");
 }

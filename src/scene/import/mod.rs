@@ -7,6 +7,8 @@ mod number;
 mod pdb;
 mod side_file;
 mod sniff;
+mod stl;
+mod vertex;
 mod xyz;
 
 pub use models::ModelChoice;
@@ -89,6 +91,7 @@ pub(super) fn read(
     let content = match sniff(file, bytes) {
         Format::Pdb => pdb::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Xyz => xyz::read(&mut import, bytes).map(Content::Molecule)?,
+        Format::Stl => stl::read(&mut import, bytes).map(Content::Mesh)?,
         Format::Foreign(what) => {
             return unsupported(format!("is {what}, not a molecule in PDB or XYZ format; {}", way_out(what)));
         }

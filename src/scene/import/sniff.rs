@@ -1,6 +1,7 @@
 //! Finds out what kind of file some bytes are, by content first and by extension second.
 
 use super::lines::Lines;
+use super::stl;
 use std::path::Path;
 
 /// What a file turned out to be.
@@ -10,6 +11,8 @@ pub enum Format {
     Pdb,
     /// A count, a comment, and lines of symbol x y z.
     Xyz,
+    /// Stereolithography, ASCII or binary.
+    Stl,
     /// Another known kind: what it is, with its article.
     Foreign(&'static str),
     /// Nothing that is known here.
@@ -37,7 +40,6 @@ const MAGIC: &[(&[u8], &str)] = &[
     (b"version https://git-lfs", "a Git LFS pointer instead of the file itself"),
     (b"ply", "a PLY mesh"),
     (b"OFF", "an OFF mesh"),
-    (b"solid ", "an STL mesh"),
     (b"@<TRIPOS>", "a MOL2 file"),
     (b"<", "a web page or XML file"),
     (b"{", "a JSON file"),
@@ -56,7 +58,6 @@ const FOREIGN_EXTENSIONS: &[(&str, &str)] = &[
     ("cube", "a Gaussian cube file"),
     ("gro", "a GROMACS file"),
     ("obj", "an OBJ mesh"),
-    ("stl", "an STL mesh"),
     ("ply", "a PLY mesh"),
     ("off", "an OFF mesh"),
     ("3mf", "a 3MF mesh"),
@@ -76,14 +77,22 @@ pub fn sniff(name: &str, bytes: &[u8]) -> Format {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let head = &bytes[..bytes.len().min(HEAD)];
     let start = head.trim_ascii_start();
-    if let Some((_, what)) = MAGIC.iter().find(|(magic, _)| head.starts_with(magic) || start.starts_with(magic)) {
-        return Format::Foreign(what);
-    }
     let extension = Path::new(name)
         .extension()
         .map(|extension| extension.to_string_lossy().to_ascii_lowercase())
         .unwrap_or_default();
+    if let Some(format) = triangles(bytes) {
+        return format;
+    }
+    if let Some((_, what)) = MAGIC.iter().find(|(magic, _)| head.starts_with(magic) || start.starts_with(magic)) {
+        return Format::Foreign(what);
+    }
     by_lines(head, &extension).unwrap_or_else(|| by_extension(&extension))
+}
+
+/// Meshes that begin or end as nothing else does.
+fn triangles(bytes: &[u8]) -> Option<Format> {
+    (stl::is_exact_binary(bytes) || stl::begins_as_text(bytes)).then_some(Format::Stl)
 }
 
 /// What the first lines tell, if they do.
@@ -146,6 +155,7 @@ fn by_extension(extension: &str) -> Format {
     match extension {
         "pdb" | "ent" | "pdb1" | "brk" | "pdbqt" => Format::Pdb,
         "xyz" => Format::Xyz,
+        "stl" => Format::Stl,
         _ => FOREIGN_EXTENSIONS
             .iter()
             .find(|(foreign, _)| *foreign == extension)
