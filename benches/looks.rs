@@ -16,7 +16,7 @@ use restyle::scene::Scene;
 use restyle::shipped::{LOOKS, MOLECULES, find};
 
 const ROUNDS: usize = 15;
-const REQUEST: Request = Request { size: [1920, 1080], samples: 1, transparent: false, wide: false };
+const REQUEST: Request = Request::new([1920, 1080], 1);
 
 fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
     values.sort_by(f64::total_cmp);

@@ -16,7 +16,7 @@ use restyle::scene::{LoadOptions, Scene};
 use restyle::shipped::{LOOKS, MOLECULES, Shipped, find};
 
 const SAVES: usize = 1000;
-const REQUEST: Request = Request { size: [1000, 1000], samples: 1, transparent: false, wide: false };
+const REQUEST: Request = Request::new([1000, 1000], 1);
 
 /// What one save took, in milliseconds.
 #[derive(Default)]

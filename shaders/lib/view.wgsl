@@ -10,6 +10,9 @@ struct View {
     // View units per unit of normalised device x, y: at depth 1 in perspective, everywhere in orthographic.
     half_extent: vec2<f32>,
     size_px: vec2<f32>,
+    // The tile of the picture that is drawn: its first pixel and its size. The whole picture is one tile from 0.
+    tile_origin_px: vec2<f32>,
+    tile_size_px: vec2<f32>,
     // Where in its pixel this sample lies, from the pixel's centre, in pixels, y down.
     jitter_px: vec2<f32>,
     // 1 where the view is orthographic, 0 where it is perspective.
@@ -35,9 +38,9 @@ struct Ray {
     direction: vec3<f32>,
 }
 
-// The ray of this sample for a fragment's position.
+// The ray of this sample for a fragment's position in its tile. Whole pixels add up exactly, so that tiles are the picture.
 fn ray_at(view: View, position_px: vec2<f32>) -> Ray {
-    let plane = position_px * view.plane_from_px.xy + view.plane_from_px.zw;
+    let plane = (position_px + view.tile_origin_px) * view.plane_from_px.xy + view.plane_from_px.zw;
     if ORTHOGRAPHIC {
         return Ray(vec3<f32>(plane, 0.0), vec3<f32>(0.0, 0.0, -1.0));
     }

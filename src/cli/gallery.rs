@@ -74,7 +74,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         .map(|name| ("scene", Path::new(name)))
         .chain(styles.iter().flat_map(|style| style.value.files.iter().map(|file| ("style", file.as_path()))))
         .collect();
-    inputs::check_outputs(outputs.iter().map(PathBuf::as_path), &given)?;
+    inputs::check_outputs(outputs.iter().cloned(), &given)?;
     let gpu = Arc::new(Gpu::open()?);
     let adapter = gpu.info.name.clone();
     std::fs::create_dir_all(&args.output).map_err(|error| Failure::input(cannot_write(&args.output, &error)))?;
@@ -98,7 +98,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
                 none => none.insert(Engine::new(Arc::clone(&gpu), scene.value.clone(), style.value.clone())),
             };
             fresh_scene = false;
-            let request = Request { size: args.size.0, samples: args.samples, transparent: false, wide: false };
+            let request = Request::new(args.size.0, args.samples);
             let file = args.output.join(file_name(scene, style));
             let image = engine.still(&request)?;
             image.write_png(&file).map_err(|error| Failure::input(cannot_write(&file, &error)))?;

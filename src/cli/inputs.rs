@@ -225,17 +225,14 @@ fn unknown_reason(what: &str, name: &str, among: &'static [Shipped]) -> String {
 }
 
 /// Refuses outputs that would overwrite an input or one another. Devices and pipes take more than one.
-pub(crate) fn check_outputs<'a>(
-    outputs: impl Iterator<Item = &'a Path>,
-    inputs: &[(&str, &Path)],
-) -> Result<(), Failure> {
+pub(crate) fn check_outputs(outputs: impl Iterator<Item = PathBuf>, inputs: &[(&str, &Path)]) -> Result<(), Failure> {
     let inputs: Vec<_> = inputs.iter().map(|(what, path)| (*what, place(path))).collect();
     let mut former: Vec<PathBuf> = Vec::new();
     for output in outputs {
         if output.exists() && !output.is_file() {
             continue;
         }
-        let (shown, output) = (output.display(), place(output));
+        let (shown, output) = (output.display().to_string(), place(&output));
         if let Some((what, _)) = inputs.iter().find(|(_, input)| *input == output) {
             return Err(Failure::usage(format!("{shown}: is the {what} itself; write to another file")));
         }

@@ -61,7 +61,7 @@ fn draw(strip: &Strip, catalog: &Catalog<'_>, gpu: &Arc<Gpu>) -> Result<Vec<u8>,
         let source = Source::new(strip.name(), style.as_bytes());
         let style = config::load(&source, catalog).map_err(Failure::input)?;
         let mut engine = Engine::new(Arc::clone(gpu), scene.clone(), style);
-        tiles.push(engine.still(&Request { size: TILE, samples: SAMPLES, transparent: false, wide: false })?);
+        tiles.push(engine.still(&Request::new(TILE, SAMPLES))?);
     }
     let mut rgb = Vec::new();
     for y in 0..TILE[1] {

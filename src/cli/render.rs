@@ -9,8 +9,8 @@ use std::time::Instant;
 use super::inputs::{self, Size};
 use super::{Failure, answer, inputs::Loaded, tell};
 use crate::config::Style;
-use crate::engine::{Engine, Gpu, GpuError, MAX_SAMPLES, Request};
-use crate::scene::{AovName, LoadOptions, ModelChoice};
+use crate::engine::{Engine, Gpu, GpuError, MAX_SAMPLES, Request, TileError};
+use crate::scene::{AovName, LoadOptions, ModelChoice, RowsHeader, write_png_rows};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -49,6 +49,10 @@ pub(super) struct Args {
     /// Draw again after each save of the style, its bases or the scene, until interrupted
     #[arg(long, conflicts_with = "frames")]
     watch: bool,
+    /// Write this many pictures of one full turn, numbered: OUT_0001.png and so on
+    #[arg(long, value_name = "N", conflicts_with_all = ["watch", "aov", "frames"], requires = "output",
+          value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    turntable: Option<u32>,
 }
 
 impl Args {
@@ -73,13 +77,17 @@ impl Args {
     }
 
     /// The files to write.
-    pub(super) fn outputs(&self) -> impl Iterator<Item = &Path> {
-        self.output.iter().chain(self.aov.iter().map(|(_, file)| file)).map(PathBuf::as_path)
+    pub(super) fn outputs(&self) -> impl Iterator<Item = PathBuf> {
+        let pictures = self.output.iter().flat_map(|output| {
+            (0..self.turntable.unwrap_or(1))
+                .map(|index| self.turntable.map_or(output.clone(), |_| numbered(output, index)))
+        });
+        pictures.chain(self.aov.iter().map(|(_, file)| file.clone()))
     }
 
     fn request(&self) -> Request {
         let wide = self.bits == "16";
-        Request { size: self.size.0, samples: self.samples, transparent: self.transparent, wide }
+        Request { transparent: self.transparent, wide, ..Request::new(self.size.0, self.samples) }
     }
 }
 
@@ -95,12 +103,23 @@ fn parse_aov(text: &str) -> Result<(AovName, PathBuf), String> {
     }
 }
 
+/// The name of a picture of a sequence, counted from 1.
+fn numbered(output: &Path, index: u32) -> PathBuf {
+    let mut name = output.file_stem().unwrap_or_default().to_owned();
+    name.push(format!("_{:04}", index + 1));
+    if let Some(extension) = output.extension() {
+        name.push(".");
+        name.push(extension);
+    }
+    output.with_file_name(name)
+}
+
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let start = Instant::now();
     if args.output.is_none() && args.aov.is_empty() && !args.json {
         return Err(Failure::usage("nothing to write: give -o OUT.png, --aov NAME=FILE.exr or --json"));
     }
-    args.outputs().try_for_each(check_writable)?;
+    args.outputs().try_for_each(|output| check_writable(&output))?;
     inputs::check_outputs(args.outputs(), &[("scene", Path::new(&args.scene)), ("style", Path::new(&args.style))])?;
     if args.watch {
         return super::watch::run(args);
@@ -127,6 +146,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     for limit in engine.limits_exceeded() {
         tell(format!("{}: warning: {limit}", args.style));
     }
+    if let Some(count) = args.turntable {
+        return turn(&mut engine, args, count);
+    }
     let picture = draw(&mut engine, args, &|| false)?;
     let total_ms = ms_since(start);
 
@@ -146,6 +168,24 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Writes the pictures of one turn.
+fn turn(engine: &mut Engine, args: &Args, count: u32) -> Result<(), Failure> {
+    let start = Instant::now();
+    let bar = progress_bar(u64::from(count), args.json);
+    for (index, output) in (0..count).zip(args.outputs()) {
+        let turn_deg = 360.0 * index as f32 / count as f32;
+        draw_to(engine, &Request { turn_deg, ..args.request() }, Some(&output), &mut |_| ControlFlow::Continue(()))?;
+        bar.set_position(u64::from(index) + 1);
+    }
+    bar.finish_and_clear();
+    if args.json {
+        let pictures: Vec<String> = args.outputs().map(|output| output.display().to_string()).collect();
+        let line = serde_json::json!({ "pictures": pictures, "total_ms": rounded(ms_since(start)) });
+        answer(line)?;
+    }
+    Ok(())
+}
+
 /// Times of one picture in milliseconds.
 pub(super) struct Drawn {
     /// The frame itself.
@@ -156,21 +196,52 @@ pub(super) struct Drawn {
 
 /// Draws one picture and writes it, unless it `is_unwanted` before it is done.
 pub(super) fn draw(engine: &mut Engine, args: &Args, is_unwanted: &dyn Fn() -> bool) -> Result<Drawn, Failure> {
-    let first = Instant::now();
-    let bar = progress_bar(u64::from(args.samples), args.json);
-    engine.draw(&args.request(), false, &mut |done| {
+    let request = args.request();
+    let steps = if Engine::is_tiled(&request) { Engine::num_tiles(&request) } else { args.samples };
+    let bar = progress_bar(u64::from(steps), args.json);
+    let drawn = draw_to(engine, &request, args.output.as_deref(), &mut |done| {
         bar.set_position(u64::from(done));
         if is_unwanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    })?;
+    });
     bar.finish_and_clear();
-    let frame_ms = ms_since(first);
+    drawn
+}
 
+/// Draws one picture and writes it to `output`, if there is one; tile by tile where it is large.
+fn draw_to(
+    engine: &mut Engine,
+    request: &Request,
+    output: Option<&Path>,
+    progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
+) -> Result<Drawn, Failure> {
+    let first = Instant::now();
+    let cannot = |output: &Path, error: &io::Error| Failure::input(cannot_write(output, error));
+    if let Some(output) = output.filter(|_| Engine::is_tiled(request)) {
+        let header = RowsHeader { size: request.size, opaque: engine.is_opaque(request), wide: request.wide };
+        let mut failed = None;
+        let written = write_png_rows(output, &header, |sink| match engine.draw_rows(request, progress, sink) {
+            Ok(()) => Ok(()),
+            Err(TileError::Sink(error)) => Err(error),
+            Err(TileError::Gpu(error)) => {
+                failed = Some(error);
+                Err(io::ErrorKind::Other.into())
+            }
+        });
+        return match (written, failed) {
+            (_, Some(error)) => Err(error.into()),
+            (Err(error), None) => Err(cannot(output, &error)),
+            // Rows are read and encoded as they are drawn.
+            (Ok(()), None) => Ok(Drawn { frame_ms: ms_since(first), readback_ms: 0.0, encode_ms: 0.0 }),
+        };
+    }
+    engine.draw(request, false, progress)?;
+    let frame_ms = ms_since(first);
     let read = Instant::now();
-    let image = engine.read(&args.request())?;
+    let image = engine.read(request)?;
     let readback_ms = ms_since(read);
     let encode = Instant::now();
-    if let Some(output) = &args.output {
-        image.write_png(output).map_err(|error| Failure::input(cannot_write(output, &error)))?;
+    if let Some(output) = output {
+        image.write_png(output).map_err(|error| cannot(output, &error))?;
     }
     Ok(Drawn { frame_ms, readback_ms, encode_ms: ms_since(encode) })
 }
@@ -193,7 +264,10 @@ pub(super) fn describe(
     args: &Args,
     picture: &Drawn,
 ) -> Result<serde_json::Map<String, serde_json::Value>, Failure> {
-    engine.draw(&args.request(), true, &mut |_| ControlFlow::Continue(()))?;
+    // Passes of a picture in tiles are not timed.
+    if !Engine::is_tiled(&args.request()) {
+        engine.draw(&args.request(), true, &mut |_| ControlFlow::Continue(()))?;
+    }
     let passes: serde_json::Map<String, serde_json::Value> =
         engine.pass_times().iter().map(|(name, ms)| ((*name).to_owned(), rounded(*ms).into())).collect();
     let targets: serde_json::Map<String, serde_json::Value> =

@@ -5,6 +5,7 @@ pub mod lint;
 mod live;
 mod palette;
 mod pending;
+mod tiles;
 mod watch;
 
 use std::ops::ControlFlow;
@@ -26,6 +27,7 @@ use live::Live;
 pub use crate::frame::MAX_SAMPLES;
 pub use crate::gpu::{Counters, Gpu, GpuError};
 pub use live::{Part, Refusal, Reload, ReloadTimes, Sources, source_tree_shaders};
+pub use tiles::TileError;
 
 /// Effects and shaders of the contract that this version names but does not draw.
 const NOT_DRAWN: [(&str, Role, &str); 4] = [
@@ -62,6 +64,15 @@ pub struct Request {
     pub transparent: bool,
     /// 16 bits a channel instead of 8.
     pub wide: bool,
+    /// Turn of the scene about the camera's upright axis through its middle, in degrees: counter-clockwise from above.
+    pub turn_deg: f32,
+}
+
+impl Request {
+    /// An opaque picture of 8 bits a channel, straight ahead.
+    pub const fn new(size: [u32; 2], samples: u32) -> Request {
+        Request { size, samples, transparent: false, wide: false, turn_deg: 0.0 }
+    }
 }
 
 /// Counts of what a frame draws.
@@ -237,18 +248,25 @@ impl Engine {
     /// # Errors
     /// [`GpuError::Driver`] where it cannot be read back.
     pub fn read(&self, request: &Request) -> Result<Image, GpuError> {
-        let content = self.content.as_ref().ok_or(GpuError::NothingToDraw)?;
         let bytes = self.renderer.read(request.wide)?;
         let pixels = if request.wide {
             Pixels::U16(bytes.chunks_exact(2).map(bytemuck::pod_read_unaligned).collect())
         } else {
             Pixels::U8(bytes)
         };
-        Ok(Image {
-            size: request.size,
-            pixels,
-            opaque: !request.transparent && content.camera.background(false)[3] >= 1.0,
-        })
+        Ok(Image { size: request.size, pixels, opaque: self.is_opaque(request) })
+    }
+
+    /// Whether every pixel of the picture covers what is behind it.
+    pub fn is_opaque(&self, request: &Request) -> bool {
+        let background = self.content.as_ref().map(|content| content.camera.background(false)[3]);
+        !request.transparent && background.is_some_and(|alpha| alpha >= 1.0)
+    }
+
+    /// How far what a pixel sees changes others, in pixels.
+    fn reach_px(&mut self, request: &Request) -> Result<u32, GpuError> {
+        self.refresh(request.size[1])?;
+        Ok(self.renderer.reach_px())
     }
 
     /// Draws and reads one still.
@@ -369,7 +387,7 @@ fn frame_input<T>(
     request: &Request,
     draw: impl FnOnce(&FrameInput<'_>) -> T,
 ) -> T {
-    let camera = content.camera.camera(request.size);
+    let camera = content.camera.turned(request.size, request.turn_deg.to_radians());
     let lighting = lighting.lighting(&camera);
     draw(&FrameInput {
         camera: &camera,
@@ -377,6 +395,8 @@ fn frame_input<T>(
         bounds: content.scene.bounding_sphere(),
         background: content.camera.background(request.transparent),
         size: request.size,
+        tile: None,
+        shadows_drawn: false,
         samples: request.samples,
         wide: request.wide,
     })

@@ -33,8 +33,8 @@ pub use shadow::{MAX_SHADOWS, SHADOWLESS_RADII, ShadowView, Shadows};
 use shadow::{ShadowMaps, ShadowPlan};
 pub use targets::TargetBytes;
 use targets::Targets;
-pub use view::View;
 use view::sample_offsets_px;
+pub use view::{Tile, View};
 pub use visibility::VisibilityKey;
 use visibility::{DEPTH_FORMAT, Eye, ID_FORMAT, Visibility, VisibilityPass};
 pub use visibility::{mesh_module, visibility_module};
@@ -72,10 +72,27 @@ pub struct FrameInput<'a> {
     pub background: [f32; 4],
     /// Width and height in pixels.
     pub size: [u32; 2],
+    /// The tile of the picture to draw; all of it where there is none.
+    pub tile: Option<Tile>,
+    /// Whether the shadow maps still hold what the frame needs: the last one was another tile of the same picture.
+    pub shadows_drawn: bool,
     /// Samples a pixel.
     pub samples: u32,
     /// 16 bits a channel instead of 8.
     pub wide: bool,
+}
+
+impl FrameInput<'_> {
+    /// Width and height of what is drawn, in pixels.
+    fn drawn_size(&self) -> [u32; 2] {
+        self.tile.map_or(self.size, |tile| tile.size_px)
+    }
+
+    /// The view at pixel centres.
+    fn view(&self) -> View {
+        let view = View::new(self.camera, self.size);
+        self.tile.map_or(view, |tile| view.tile(tile))
+    }
 }
 
 /// Linear float pictures of the geometry and light at pixel centres.
@@ -180,7 +197,7 @@ impl Renderer {
         materials: &Materials,
         input: &FrameInput<'_>,
     ) -> Result<(), GpuError> {
-        check_size(&self.gpu, input.size)?;
+        check_size(&self.gpu, input)?;
         let needs = self.contents.needs_of(&self.gpu, list, materials)?;
         self.build(&needs, &Plan::new(&self.gpu, &needs, input), input.wide)
     }
@@ -223,18 +240,18 @@ impl Renderer {
         progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
     ) -> Result<(), GpuError> {
         let gpu = Arc::clone(&self.gpu);
-        check_size(&gpu, input.size)?;
+        check_size(&gpu, input)?;
         let Some(materials) = self.contents.common() else { return Ok(()) };
 
         // What this frame needs, and what of it is not there yet.
         let needs = self.contents.needs();
         let plan = Plan::new(&gpu, &needs, input);
         self.build(&needs, &plan, input.wide)?;
-        self.targets.fit(&gpu, input.size, if input.wide { OUTPUT_16 } else { OUTPUT_8 }, !plan.direct);
+        self.targets.fit(&gpu, input.drawn_size(), if input.wide { OUTPUT_16 } else { OUTPUT_8 }, !plan.direct);
         self.fit_shadows(&plan);
 
         // Uniforms and bindings: a view for each sample, and the view of each light that casts shadows.
-        let view = View::new(input.camera, input.size);
+        let view = input.view();
         let samples = plan.samples;
         let views: Vec<View> =
             (0..).zip(sample_offsets_px(samples)).map(|(index, offset)| view.sample(index, samples, offset)).collect();
@@ -262,15 +279,23 @@ impl Renderer {
 
         // The frame, in submissions of a few samples each, so that progress can be told.
         let mut encoder = frame_encoder(&gpu);
-        let layers = self.maps.iter().flat_map(ShadowMaps::layers);
+        let layers = self.maps.iter().filter(|_| !input.shadows_drawn).flat_map(ShadowMaps::layers);
         for ((ids, depth), (shadow, lit_scene)) in layers.zip(plan.shadows.views.iter().zip(&lit_scenes)) {
-            let pass = VisibilityPass { name: "shadow", view: 0, key: Plan::lit(shadow), ids, depth };
+            let pass =
+                VisibilityPass { name: "shadow", view: 0, key: Plan::lit(shadow), ids, depth, seen: &shadow.light };
             self.visibility.draw(&mut encoder, lit_scene, objects, &pass, &mut timer);
         }
         let clear = if plan.direct { clear_value(input.background) } else { wgpu::Color::TRANSPARENT };
         let target = ShadeTarget { light: light.as_ref().unwrap_or(&output), depth: &depth, clear };
         for index in 0..samples as usize {
-            let pass = VisibilityPass { name: "visibility", view: index, key: plan.seen, ids: &ids, depth: &depth };
+            let pass = VisibilityPass {
+                name: "visibility",
+                view: index,
+                key: plan.seen,
+                ids: &ids,
+                depth: &depth,
+                seen: &view,
+            };
             self.visibility.draw(&mut encoder, &scene, objects, &pass, &mut timer);
             self.shade.draw(&mut encoder, &plan.shade, &scene, index, &shade_group, &target, &mut timer);
             if (index + 1) % SAMPLES_PER_SUBMISSION == 0 && index + 1 < samples as usize {
@@ -321,7 +346,7 @@ impl Renderer {
     /// As [`Renderer::render`].
     pub fn render_aovs(&mut self, input: &FrameInput<'_>) -> Result<Aovs, GpuError> {
         // 16 bits keep the linear light of the single sample.
-        let single = FrameInput { samples: 1, wide: true, ..input.clone() };
+        let single = FrameInput { samples: 1, wide: true, tile: None, shadows_drawn: false, ..input.clone() };
         self.render(&single, false, &mut |_| ControlFlow::Continue(()))?;
         let gpu = Arc::clone(&self.gpu);
         let (view, objects, reach) =
@@ -368,6 +393,11 @@ impl Renderer {
         &self.last_times
     }
 
+    /// How far what a pixel sees changes others, in pixels: nothing does yet but within its own.
+    pub fn reach_px(&self) -> u32 {
+        0
+    }
+
     /// Triangles of meshes that are drawn.
     pub fn num_triangles(&self) -> u64 {
         self.contents.objects.meshes.num_triangles()
@@ -398,10 +428,13 @@ fn frame_encoder(gpu: &Gpu) -> wgpu::CommandEncoder {
     gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") })
 }
 
-fn check_size(gpu: &Gpu, size: [u32; 2]) -> Result<(), GpuError> {
+fn check_size(gpu: &Gpu, input: &FrameInput<'_>) -> Result<(), GpuError> {
+    // Viewports end where textures do, so that this holds for pictures of tiles as well.
     let limit = gpu.device.limits().max_texture_dimension_2d;
-    if size[0] == 0 || size[1] == 0 || size[0] > limit || size[1] > limit {
-        return Err(GpuError::TooLarge { width: size[0], height: size[1], limit });
+    for [width, height] in [input.size, input.drawn_size()] {
+        if width == 0 || height == 0 || width > limit || height > limit {
+            return Err(GpuError::TooLarge { width, height, limit });
+        }
     }
     Ok(())
 }

@@ -88,7 +88,8 @@ impl Seen {
         let size = Vec2::from(view.size_px);
         let orthographic = view.orthographic > 0.5;
         let scale = if orthographic { 1.0 } else { 1.0 / depth };
-        let center_px = (center.truncate() * scale / half * Vec2::new(0.5, -0.5) + 0.5) * size;
+        let in_picture = (center.truncate() * scale / half * Vec2::new(0.5, -0.5) + 0.5) * size;
+        let center_px = in_picture - Vec2::from(view.tile_origin_px);
         let outer_radius = radius + reach.world;
         let (inner, outer, lean) = if orthographic {
             (radius, outer_radius, 0.0)
@@ -128,8 +129,8 @@ impl Tiles {
         if size_px < 1.0 {
             return None;
         }
-        let columns = (view.size_px[0] / size_px).ceil() as usize;
-        let rows = (view.size_px[1] / size_px).ceil() as usize;
+        let columns = (view.tile_size_px[0] / size_px).ceil() as usize;
+        let rows = (view.tile_size_px[1] / size_px).ceil() as usize;
         Some(Tiles { size_px, columns, rows, covered: vec![f32::INFINITY; columns * rows] })
     }
 

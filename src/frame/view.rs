@@ -17,6 +17,10 @@ gpu_struct! {
         pub half_extent: [f32; 2],
         /// Picture size in pixels.
         pub size_px: [f32; 2],
+        /// First pixel of the tile that is drawn.
+        pub tile_origin_px: [f32; 2],
+        /// Size of the tile.
+        pub tile_size_px: [f32; 2],
         /// Offset of the sample from the pixel's centre, in pixels, y down.
         pub jitter_px: [f32; 2],
         /// 1 or 0.
@@ -38,6 +42,15 @@ gpu_struct! {
     }
 }
 
+/// A rectangle of a picture that is drawn by itself, since the whole would not fit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Tile {
+    /// Its first pixel, from the top left.
+    pub origin_px: [u32; 2],
+    /// Width and height in pixels.
+    pub size_px: [u32; 2],
+}
+
 impl View {
     /// A view through `camera` onto `size_px` pixels at pixel centres.
     pub fn new(camera: &Camera, size_px: [u32; 2]) -> View {
@@ -53,6 +66,8 @@ impl View {
             view_from_world: camera.view_from_world.to_cols_array_2d(),
             half_extent: camera.half_extent.to_array(),
             size_px: [size_px[0] as f32, size_px[1] as f32],
+            tile_origin_px: [0.0; 2],
+            tile_size_px: [size_px[0] as f32, size_px[1] as f32],
             jitter_px: [0.0; 2],
             plane_from_px: plane_from_px(camera.half_extent, size_px, Vec2::ZERO),
             orthographic: if camera.orthographic { 1.0 } else { 0.0 },
@@ -77,6 +92,12 @@ impl View {
             footprint_px: 1.0 / (count as f32).sqrt(),
             ..*self
         }
+    }
+
+    /// The same view of a tile of its picture.
+    pub fn tile(&self, tile: Tile) -> View {
+        let floats = |[x, y]: [u32; 2]| [x as f32, y as f32];
+        View { tile_origin_px: floats(tile.origin_px), tile_size_px: floats(tile.size_px), ..*self }
     }
 
     /// From world to view space.

@@ -76,6 +76,8 @@ pub struct VisibilityPass<'a> {
     pub ids: &'a wgpu::TextureView,
     /// Where depths go.
     pub depth: &'a wgpu::TextureView,
+    /// The view that sees: of its picture only its tile is drawn.
+    pub seen: &'a View,
 }
 
 /// Group 0 as one pass binds it.
@@ -340,6 +342,11 @@ impl Visibility {
             multiview_mask: None,
         });
         pass.set_bind_group(0, &bindings.group, &[SceneBindings::offset(to.view)]);
+        // The viewport is that of the whole picture, so that triangles fall on the same pixels in every tile.
+        let ([x, y], [width, height]) = (to.seen.tile_origin_px, to.seen.size_px);
+        if to.seen.tile_size_px != to.seen.size_px {
+            pass.set_viewport(-x, -y, width, height, 0.0, 1.0);
+        }
         for (kind, count) in [Kind::Atom, Kind::Connector].into_iter().zip(bindings.num_drawn) {
             if count > 0
                 && let Some(pipeline) = self.pipelines.get(&(kind, to.key))

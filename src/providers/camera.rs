@@ -43,6 +43,12 @@ impl CameraProvider {
 
     /// The camera for a picture of this size.
     pub fn camera(&self, size_px: [u32; 2]) -> Camera {
+        self.turned(size_px, 0.0)
+    }
+
+    /// The same with the scene turned by `turn_rad` about the upright axis through the middle of its sphere,
+    /// counter-clockwise as seen from above.
+    pub fn turned(&self, size_px: [u32; 2], turn_rad: f32) -> Camera {
         let aspect = size_px[0].max(1) as f32 / size_px[1].max(1) as f32;
         let radius = self.bounds.radius.max(f32::MIN_POSITIVE);
         let center = self.principal * self.bounds.center;
@@ -58,10 +64,14 @@ impl CameraProvider {
         let distance = position.distance(target).max(1e-6 * radius);
         let toward = (target - position).try_normalize().unwrap_or(Vec3::NEG_Z);
         let up = self.style.up.map_or(Vec3::Y, |up| DVec3::from_array(up).normalize_or(DVec3::Y).as_vec3());
+        let upright = up;
         // An up along the view says nothing: take another.
         let up = if up.cross(toward).length_squared() < 1e-8 { Vec3::new(0.0, toward.z, -toward.y) } else { up };
         let up = if up.cross(toward).length_squared() < 1e-8 { Vec3::Z } else { up };
         let view_from_turned = glam::camera::rh::view::look_to_mat4(position, toward, up);
+        let turn =
+            Mat4::from_translation(center) * Mat4::from_axis_angle(upright, turn_rad) * Mat4::from_translation(-center);
+        let view_from_turned = if turn_rad == 0.0 { view_from_turned } else { view_from_turned * turn };
         let zoom = self.style.zoom as f32;
         let half_height = if self.style.orthographic {
             // What the perspective camera would show at the target's distance.

@@ -48,25 +48,74 @@ impl Image {
     /// # Errors
     /// Whatever the writer says.
     pub fn encode_png(&self, writer: &mut dyn Write) -> io::Result<()> {
-        let mut encoder = png::Encoder::new(writer, self.size[0], self.size[1]);
-        encoder.set_color(if self.opaque { png::ColorType::Rgb } else { png::ColorType::Rgba });
-        encoder.set_compression(png::Compression::Fast);
-        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
         let keep = if self.opaque { 3 } else { 4 };
-        let bytes: Vec<u8> = match &self.pixels {
-            Pixels::U8(values) => {
-                encoder.set_depth(png::BitDepth::Eight);
-                values.chunks_exact(4).flat_map(|pixel| &pixel[..keep]).copied().collect()
-            }
+        let (bytes, wide): (Vec<u8>, bool) = match &self.pixels {
+            Pixels::U8(values) => (values.chunks_exact(4).flat_map(|pixel| &pixel[..keep]).copied().collect(), false),
             Pixels::U16(values) => {
-                encoder.set_depth(png::BitDepth::Sixteen);
-                values.chunks_exact(4).flat_map(|pixel| &pixel[..keep]).flat_map(|value| value.to_be_bytes()).collect()
+                let kept = values.chunks_exact(4).flat_map(|pixel| &pixel[..keep]);
+                (kept.flat_map(|value| value.to_be_bytes()).collect(), true)
             }
         };
-        let mut writer = encoder.write_header().map_err(of_png)?;
+        let mut writer = encoder(writer, self.size, self.opaque, wide).write_header().map_err(of_png)?;
         writer.write_image_data(&bytes).map_err(of_png)?;
         writer.finish().map_err(of_png)
     }
+}
+
+/// What a picture is that is written row by row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RowsHeader {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Every alpha is full: the file needs no alpha channel.
+    pub opaque: bool,
+    /// 16 bits a channel instead of 8.
+    pub wide: bool,
+}
+
+/// Writes a PNG file from rows that `rows` hands over from the top, as many at a time as it likes: RGBA, 8 bits a channel,
+/// or 16 in native order. The file appears whole or not at all.
+///
+/// # Errors
+/// Whatever the file system or `rows` says.
+pub fn write_png_rows(
+    path: &Path,
+    header: &RowsHeader,
+    rows: impl FnOnce(&mut dyn FnMut(&[u8]) -> io::Result<()>) -> io::Result<()>,
+) -> io::Result<()> {
+    write_whole(path, |file| {
+        let mut writer = encoder(file, header.size, header.opaque, header.wide).write_header().map_err(of_png)?;
+        let mut stream = writer.stream_writer().map_err(of_png)?;
+        let pixel_bytes = if header.wide { 8 } else { 4 };
+        let keep = if header.opaque { 3 } else { 4 };
+        let row_bytes = header.size[0].max(1) as usize * pixel_bytes;
+        let mut kept = Vec::new();
+        rows(&mut |bytes| {
+            // A row at a time: no second copy of all of them.
+            for row in bytes.chunks(row_bytes) {
+                kept.clear();
+                if header.wide {
+                    let values = row.chunks_exact(2).map(|pair| u16::from_ne_bytes([pair[0], pair[1]]).to_be_bytes());
+                    kept.extend(values.enumerate().filter(|(index, _)| index % 4 < keep).flat_map(|(_, value)| value));
+                } else {
+                    kept.extend(row.chunks_exact(4).flat_map(|pixel| &pixel[..keep]));
+                }
+                stream.write_all(&kept)?;
+            }
+            Ok(())
+        })?;
+        stream.finish().map_err(of_png)
+    })
+}
+
+/// The encoder of all pictures: quick, and tagged as sRGB.
+fn encoder<W: Write>(writer: W, [width, height]: [u32; 2], opaque: bool, wide: bool) -> png::Encoder<'static, W> {
+    let mut encoder = png::Encoder::new(writer, width, height);
+    encoder.set_color(if opaque { png::ColorType::Rgb } else { png::ColorType::Rgba });
+    encoder.set_depth(if wide { png::BitDepth::Sixteen } else { png::BitDepth::Eight });
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    encoder
 }
 
 /// Writes a file beside its place first, then moves it there: nothing half-written stays, and a former file's

@@ -38,7 +38,7 @@ pub use builder::{MoleculeBuilder, NewAtom, NewCopy};
 pub use camera::Camera;
 pub use element::{Element, ElementInfo};
 pub use error::SceneError;
-pub use image::{Image, Pixels, write_whole};
+pub use image::{Image, Pixels, RowsHeader, write_png_rows, write_whole};
 pub use import::{LoadOptions, ModelChoice};
 pub use light::{Light, LightPlace, Lighting, Shadow};
 pub use mesh::{Assembly, MeshMaterial, Part, RawMesh, Shape};

@@ -57,7 +57,7 @@ fn engine_on(gpu: Arc<Gpu>, atoms: &[&str], style: &str) -> Engine {
 
 /// A request of one opaque picture of 8 bits.
 pub fn request(size: [u32; 2], samples: u32) -> Request {
-    Request { size, samples, transparent: false, wide: false }
+    Request::new(size, samples)
 }
 
 /// Depth, normal, id and linear light at the pixels' centres.

@@ -7,6 +7,7 @@ mod environment;
 mod furnace;
 mod gpu;
 mod impostors;
+mod meshes;
 mod outlines;
 mod output;
 mod sampling;

@@ -46,7 +46,7 @@ fn transparent_pictures_composite_to_the_direct_ones() {
     for (wide, samples, limit) in
         [(true, 16, COMPOSITE_16), (true, 1, COMPOSITE_16), (false, 16, COMPOSITE_8), (false, 1, COMPOSITE_8)]
     {
-        let request = Request { size: SIZE, samples, transparent: true, wide };
+        let request = Request { transparent: true, wide, ..Request::new(SIZE, samples) };
         let Some(mut engine) = gpu::engine(MOLECULE, &style("#123456")) else { return };
         let cut_out = engine.still(&request).expect("a still");
         let partly = gpu::pixels(SIZE).filter(|&(x, y)| (0.1..0.9).contains(&cut_out.pixel(x, y)[3])).count();
@@ -82,7 +82,7 @@ fn flat_colours_leave_as_they_were_written() {
         );
         for (wide, samples) in [(false, 1), (false, 16), (true, 1), (true, 16)] {
             let Some(mut engine) = gpu::engine(&["C 0 0 0"], &style) else { return };
-            let image = engine.still(&Request { size: SIZE, samples, transparent: false, wide }).expect("a still");
+            let image = engine.still(&Request { wide, ..Request::new(SIZE, samples) }).expect("a still");
             for ((x, y), color) in [((SIZE[0] / 2, SIZE[1] / 2), object), ((2, 2), background)] {
                 let start = 4 * (y as usize * SIZE[0] as usize + x as usize);
                 match &image.pixels {

@@ -102,7 +102,7 @@ fn defined(style: &Style, molecule: &Molecule) -> Assignment {
         if hidden { None } else { target([rules[a], rules[b]].into_iter().flatten().min()) }
     };
     let connectors = molecule.bonds.iter().map(|bond| connector(bond.a as usize, bond.b as usize)).collect();
-    Assignment { atoms, connectors }
+    Assignment { atoms, connectors, parts: Vec::new() }
 }
 
 /// Which selectors match nothing, as it is defined, in the order of the text.
