@@ -8,7 +8,14 @@
 
 mod assembly;
 mod build;
+mod hull;
+mod links;
+mod mend;
+mod place;
 mod raw;
+mod vertices;
+mod weld;
+mod winding;
 
 pub use assembly::{Assembly, MeshMaterial, Part, Shape, pack_hull, pack_normal, unpack_hull, unpack_normal};
 pub use raw::{RawMesh, RawNormals, RawPart, RawShape};
