@@ -41,8 +41,7 @@ impl Assembly {
             shapes.iter().zip(&num_places).map(|(shape, &times)| Frame::of(shape).filter(|_| times > 0)).collect();
         let (low, high) = bounds(&parts, &shapes, &frames, &num_places)?;
         let origin = low * 0.5 + high * 0.5;
-        let radius = (high * 0.5 - low * 0.5).length();
-        let unit = if COMMON_RADII.contains(&radius) { 1.0 } else { power_below(radius) };
+        let unit = unit_for(high * 0.5 - low * 0.5);
 
         let mut name_of: Vec<&str> = vec![""; shapes.len()];
         parts.iter().rev().for_each(|part| name_of[part.shape as usize] = &part.name);
@@ -80,6 +79,14 @@ impl Assembly {
         let sphere = sphere_around(&mended, &placed);
         Some(Assembly { shapes: mended, parts: placed, materials, names: names.texts, sphere, unit, origin })
     }
+}
+
+/// The unit for a box of half this diagonal.
+fn unit_for(half_diagonal: DVec3) -> f64 {
+    // Squares of the smallest lengths would vanish.
+    let largest = power_below(half_diagonal.max_element());
+    let radius = (half_diagonal / largest).length() * largest;
+    if COMMON_RADII.contains(&radius) { 1.0 } else { power_below(radius) }
 }
 
 /// How the positions of a shape are stored, and what brings those back to the coordinates of the file's shape.

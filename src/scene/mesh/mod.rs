@@ -8,11 +8,15 @@
 
 mod assembly;
 mod build;
+#[cfg(test)]
+mod build_tests;
 mod hull;
 mod links;
 mod mend;
 mod place;
 mod raw;
+#[cfg(test)]
+mod solids;
 mod vertices;
 mod weld;
 mod winding;
