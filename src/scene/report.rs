@@ -76,6 +76,22 @@ note_kinds! {
     TrailingBytes => "byte" / "bytes": "at the end not read",
     /// A mesh file that ends inside something.
     MeshCut => "place" / "places": "where the file ends too early: what is whole is drawn",
+    /// A part whose placement is not finite, or shrinks everything to a line.
+    PartUnplaceable => "part" / "parts": "left out: its placement is not finite or shrinks it to nothing",
+    /// A triangle with a vertex that is missing or lies nowhere.
+    LostTriangle => "triangle" / "triangles": "left out: a vertex is missing or no finite number",
+    /// A triangle that is a line or a point.
+    FlatTriangle => "triangle" / "triangles": "without area left out",
+    /// A triangle that is there more than once.
+    RepeatedTriangle => "triangle" / "triangles": "left out: the same one is there already",
+    /// Vertices at open edges, nearer together than a millionth of the size.
+    NearlyWelded => "vertex" / "vertices": "at open edges moved onto another one that is as good as equal",
+    /// Triangles whose winding did not agree with that of their neighbours.
+    FaceTurned => "triangle" / "triangles": "turned to agree with their neighbours",
+    /// A closed surface whose triangles all looked inwards.
+    InsideOut => "closed surface" / "closed surfaces": "inside out, turned",
+    /// Normals that look inwards.
+    NormalsDropped => "normal" / "normals": "of the file not used: most look to the other side than their triangles",
 }
 
 /// One thing that was mended, guessed or skipped.

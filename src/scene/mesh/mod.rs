@@ -8,7 +8,18 @@
 
 mod assembly;
 mod build;
+#[cfg(test)]
+mod build_tests;
+mod hull;
+mod links;
+mod mend;
+mod place;
 mod raw;
+#[cfg(test)]
+mod solids;
+mod vertices;
+mod weld;
+mod winding;
 
 pub use assembly::{Assembly, MeshMaterial, Part, Shape, pack_hull, pack_normal, unpack_hull, unpack_normal};
 pub use raw::{RawMesh, RawNormals, RawPart, RawShape};

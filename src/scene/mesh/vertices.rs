@@ -1,0 +1,258 @@
+//! The vertices that are drawn: one for each place, normal and colour.
+//!
+//! Where the file has no normal, the faces around a place fall into smooth groups, parted by edges sharper than the crease
+//! angle, and a group's normal is the mean of its faces', each weighted by its angle at the place [Thurmer1998].
+
+use glam::{DVec3, Vec3};
+
+use super::hull::hull_vector;
+use super::links::{Links, SHARED};
+use super::place::unit_normal;
+use super::weld::Surface;
+use super::{Shape, pack_hull, pack_normal};
+use crate::scene::Sphere;
+
+/// Cosine of the crease angle, 35 degrees: smooth shading over less, a hard edge over more.
+const CREASE: f32 = 0.819_152;
+/// Cosine of half of it: normals so near to their mean have no crease among them.
+const HALF_CREASE: f32 = 0.953_717;
+/// Triangles lower than this, in shapes of size 1 to 2, have normals made of rounding errors.
+const NEEDLE: f64 = 1e-6;
+
+/// A face at a place.
+#[derive(Debug, Clone, Copy)]
+struct Face {
+    /// Unit normal, or zero.
+    normal: Vec3,
+    /// Its angle at the place, in radians; 0 if it has no say.
+    angle: f32,
+    /// Whether it is drawn.
+    is_drawn: bool,
+}
+
+/// What is known of the faces when vertices are made.
+pub(super) struct Known<'a> {
+    /// Which triangles were turned over.
+    pub is_turned: &'a [bool],
+    /// Which have no area, and are not drawn.
+    pub is_flat: &'a [bool],
+}
+
+impl Known<'_> {
+    /// The file's normal at a corner, on the side of the face.
+    fn file_normal(&self, surface: &Surface, corner: u32, face_normal: Vec3) -> Option<Vec3> {
+        let (face, k) = (corner as usize / 3, corner as usize % 3);
+        let normal = unit_normal(*surface.normals.get(surface.normal_corners.get(face)?[k] as usize)?)?;
+        Some(if self.is_turned[face] && normal.dot(face_normal) < 0.0 { -normal } else { normal })
+    }
+
+    /// Drops the file's normals if most of them look to the other side than their faces. Gives how many there were.
+    pub fn check_normals(&self, surface: &mut Surface) -> u32 {
+        let (mut num_good, mut num_bad) = (0, 0);
+        for (corner, &place) in (0_u32..).zip(surface.triangles.as_flattened()) {
+            if surface.normal_corners.is_empty() {
+                break;
+            }
+            let face = self.face(surface, corner, place);
+            match self.file_normal(surface, corner, face.normal) {
+                Some(normal) if normal.dot(face.normal) < 0.0 => num_bad += 1,
+                Some(_) => num_good += 1,
+                None => {}
+            }
+        }
+        if num_bad <= num_good {
+            return 0;
+        }
+        (surface.normals, surface.normal_corners) = (Vec::new(), Vec::new());
+        num_bad + num_good
+    }
+
+    fn face(&self, surface: &Surface, corner: u32, place: u32) -> Face {
+        let (face, k) = (corner as usize / 3, corner as usize % 3);
+        let triangle = &surface.triangles[face];
+        let at = |place: u32| surface.positions[place as usize];
+        let (p, q, r) = (at(place), at(triangle[(k + 1) % 3]), at(triangle[(k + 2) % 3]));
+        let (a, b) = (q - p, r - p);
+        let cross = a.cross(b);
+        let (area, dot) = (cross.length(), a.dot(b));
+        let longest = a.length_squared().max(b.length_squared()).max((r - q).length_squared());
+        let is_needle = self.is_flat[face] || area * area <= NEEDLE * NEEDLE * longest;
+        let angle = if is_needle { 0.0 } else { angle(area, dot) };
+        let normal = if area > 0.0 { (cross / area).as_vec3() } else { Vec3::ZERO };
+        Face { normal, angle, is_drawn: !self.is_flat[face] }
+    }
+}
+
+/// The angle of a sine and a cosine up to a common factor; off by less than 1e-5 radians.
+fn angle(sine: f64, cosine: f64) -> f32 {
+    sine.atan2(cosine) as f32
+}
+
+/// How scaled positions become those of the shape.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Placing {
+    /// Factor.
+    pub scale: f64,
+    /// Where the middle goes.
+    pub middle: DVec3,
+}
+
+/// Makes the vertices and triangles of a shape; its sphere is not filled in. `links` must hold rings.
+pub(super) fn make(surface: Surface, links: Links, known: &Known, placing: Placing) -> Shape {
+    let mut links = links;
+    // A corner's place on the ring is not needed any more once its vertex is known: the triangles grow there.
+    let mut rings = std::mem::take(&mut links.twins);
+    let num_places = surface.positions.len();
+    let mut shape = Shape {
+        positions: Vec::with_capacity(num_places),
+        normals: Vec::with_capacity(num_places),
+        hulls: Vec::with_capacity(num_places),
+        colors: Vec::with_capacity(if surface.colors.is_empty() { 0 } else { num_places }),
+        triangles: Vec::new(),
+        sphere: Sphere { center: Vec3::ZERO, radius: 0.0 },
+    };
+    let mut around = Around::default();
+    for place in 0..num_places as u32 {
+        let corners = links.corners_at(place);
+        let Some((mean, hull)) = around.gather(&surface, known, corners, place) else { continue };
+        around.find_keys(&surface, known, corners, &rings, mean);
+        let position = (surface.positions[place as usize] * placing.scale + placing.middle).as_vec3();
+        let mut last = None;
+        for &(key, at) in &around.keys {
+            if last != Some(key) {
+                last = Some(key);
+                shape.positions.push(position);
+                shape.normals.push(key.0);
+                shape.hulls.push(hull);
+                if !surface.colors.is_empty() {
+                    shape.colors.push(key.1);
+                }
+            }
+            rings.as_flattened_mut()[corners[at as usize] as usize] = shape.positions.len() as u32 - 1;
+        }
+    }
+    let mut is_flat = known.is_flat.iter();
+    rings.retain(|_| is_flat.next() != Some(&true));
+    shape.triangles = rings;
+    shape
+}
+
+/// Room for the work at one place.
+#[derive(Debug, Default)]
+struct Around {
+    faces: Vec<Face>,
+    /// Packed normal and colour of a vertex, and which corner it belongs to.
+    keys: Vec<((u32, [u8; 3]), u32)>,
+    /// For each face the smooth group, and whether another one leads to it.
+    groups: Vec<u32>,
+    is_led_to: Vec<bool>,
+    sums: Vec<Vec3>,
+    lowest: f32,
+}
+
+impl Around {
+    /// Looks at all faces around a place: their mean normal and the packed hull vector; none where nothing is drawn.
+    fn gather(&mut self, surface: &Surface, known: &Known, corners: &[u32], place: u32) -> Option<(Vec3, u32)> {
+        self.faces.clear();
+        self.faces.extend(corners.iter().map(|&corner| known.face(surface, corner, place)));
+        if !self.faces.iter().any(|face| face.is_drawn) {
+            return None;
+        }
+        if self.faces.iter().all(|face| face.angle == 0.0) {
+            // Nothing but needles.
+            self.faces.iter_mut().filter(|face| face.is_drawn).for_each(|face| face.angle = 1.0);
+        }
+        let sound = self.faces.iter().filter(|face| face.angle > 0.0).map(|face| (face.normal, face.angle));
+        let sum: Vec3 = sound.clone().map(|(normal, angle)| normal * angle).sum();
+        let mean = if sum.length() > 1e-4 { sum.normalize() } else { Vec3::ZERO };
+        self.lowest = sound.clone().map(|(normal, _)| normal.dot(mean)).fold(1.0, f32::min);
+        Some((mean, pack_hull(hull_vector(sound, mean, self.lowest))))
+    }
+
+    /// Finds the normal and colour of each corner and sorts by them.
+    fn find_keys(&mut self, surface: &Surface, known: &Known, corners: &[u32], rings: &[[u32; 3]], mean: Vec3) {
+        self.keys.clear();
+        let mut is_grouped = false;
+        let smooth = pack_normal(mean);
+        for (at, &corner) in (0_u32..).zip(corners) {
+            let face = self.faces[at as usize];
+            if !face.is_drawn {
+                continue;
+            }
+            let normal = match known.file_normal(surface, corner, face.normal) {
+                Some(normal) => pack_normal(normal),
+                None if self.lowest > HALF_CREASE => smooth,
+                None => {
+                    if !is_grouped {
+                        self.group(corners, rings, mean);
+                        is_grouped = true;
+                    }
+                    pack_normal(self.sums[self.groups[at as usize] as usize])
+                }
+            };
+            let color = surface.color_corners.get(corner as usize / 3).map(|colors| colors[corner as usize % 3]);
+            let color = color.and_then(|color| surface.colors.get(color as usize)).copied().unwrap_or_default();
+            self.keys.push(((normal, color), at));
+        }
+        let first = self.keys.first().map(|key| key.0);
+        if self.keys.iter().any(|key| Some(key.0) != first) {
+            self.keys.sort_unstable();
+        }
+    }
+
+    /// Parts the faces into smooth groups and finds the normal of each.
+    fn group(&mut self, corners: &[u32], rings: &[[u32; 3]], mean: Vec3) {
+        let Around { faces, groups, is_led_to, sums, .. } = self;
+        let rings = rings.as_flattened();
+        let following = |at: u32| {
+            let corner = rings[corners[at as usize] as usize];
+            if corner >= SHARED { None } else { corners.binary_search(&corner).ok().map(|at| at as u32) }
+        };
+        let num_faces = faces.len() as u32;
+        groups.clear();
+        groups.resize(faces.len(), u32::MAX);
+        is_led_to.clear();
+        is_led_to.resize(faces.len(), false);
+        (0..num_faces).filter_map(following).for_each(|at| is_led_to[at as usize] = true);
+        sums.clear();
+        // Fans first, from their starts; what is left then are whole rings.
+        let starts = (0..num_faces).filter(|&at| !is_led_to[at as usize]).chain(0..num_faces);
+        for start in starts {
+            if groups[start as usize] != u32::MAX {
+                continue;
+            }
+            let first_group = sums.len() as u32;
+            sums.push(Vec3::ZERO);
+            // Needles have no normal: they are passed over.
+            let (mut first_normal, mut last_normal) = (None, None::<Vec3>);
+            let mut at = start;
+            let is_ring = loop {
+                let Face { normal, angle, .. } = faces[at as usize];
+                if angle > 0.0 {
+                    if last_normal.is_some_and(|last| last.dot(normal) < CREASE) {
+                        sums.push(Vec3::ZERO);
+                    }
+                    (first_normal, last_normal) = (first_normal.or(Some(normal)), Some(normal));
+                }
+                let group = sums.len() - 1;
+                sums[group] += normal * angle;
+                groups[at as usize] = group as u32;
+                match following(at) {
+                    Some(next) if next == start => break true,
+                    Some(next) if groups[next as usize] == u32::MAX => at = next,
+                    _ => break false,
+                }
+            };
+            let last_group = sums.len() as u32 - 1;
+            let closes = matches!((first_normal, last_normal), (Some(a), Some(b)) if a.dot(b) >= CREASE);
+            if is_ring && closes && last_group > first_group {
+                let sum = sums[last_group as usize];
+                sums[first_group as usize] += sum;
+                sums[last_group as usize] = sums[first_group as usize];
+            }
+        }
+        for sum in sums.iter_mut() {
+            *sum = sum.try_normalize().unwrap_or(if mean == Vec3::ZERO { Vec3::Z } else { mean });
+        }
+    }
+}
