@@ -62,6 +62,24 @@ pub enum SceneError {
         /// What is wrong, and the way out after a semicolon.
         what: String,
     },
+    /// A byte contradicts a format without lines so that nothing can be drawn safely.
+    #[error("{file}: byte {byte}: {what}")]
+    MalformedAt {
+        /// The file as the caller named it.
+        file: String,
+        /// Byte, from 0.
+        byte: u64,
+        /// What is wrong, and the way out after a semicolon.
+        what: String,
+    },
+    /// Parts of the file contradict each other, or what they need is missing.
+    #[error("{file}: {what}")]
+    Damaged {
+        /// The file as the caller named it.
+        file: String,
+        /// What is wrong and where, and the way out after a semicolon.
+        what: String,
+    },
     /// The file is of a kind that this reader does not read.
     #[error("{file}: {what}")]
     Unsupported {

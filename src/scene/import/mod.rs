@@ -1,12 +1,15 @@
 //! Importers: bytes of a file to a molecule or a mesh. One file per format.
 
+mod compact;
 mod conect;
+mod gltf;
 mod lines;
 mod models;
 mod number;
 mod pdb;
 mod side_file;
 mod sniff;
+mod tree_path;
 mod xyz;
 
 pub use models::ModelChoice;
@@ -44,6 +47,11 @@ impl Import<'_> {
     /// The error of a line that nothing can be made of; `what` says the way out after a semicolon.
     fn malformed(&self, line: u32, what: String) -> SceneError {
         SceneError::Malformed { file: self.file.to_string(), line, what }
+    }
+
+    /// The same for a file without lines; `byte` counts from 0.
+    fn malformed_at(&self, byte: usize, what: String) -> SceneError {
+        SceneError::MalformedAt { file: self.file.to_string(), byte: byte as u64, what }
     }
 
     /// The position of three coordinates; `None`, with a note, if one is no number.
@@ -89,6 +97,7 @@ pub(super) fn read(
     let content = match sniff(file, bytes) {
         Format::Pdb => pdb::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Xyz => xyz::read(&mut import, bytes).map(Content::Molecule)?,
+        Format::Gltf => gltf::read(&mut import, bytes).map(Content::Mesh)?,
         Format::Foreign(what) => {
             return unsupported(format!("is {what}, not a molecule in PDB or XYZ format; {}", way_out(what)));
         }

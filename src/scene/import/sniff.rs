@@ -10,6 +10,8 @@ pub enum Format {
     Pdb,
     /// A count, a comment, and lines of symbol x y z.
     Xyz,
+    /// glTF 2.0: JSON, or a GLB.
+    Gltf,
     /// Another known kind: what it is, with its article.
     Foreign(&'static str),
     /// Nothing that is known here.
@@ -30,7 +32,6 @@ const MAGIC: &[(&[u8], &str)] = &[
     (b"BZh", "a bzip2 archive"),
     (b"\xfd7zXZ", "an xz archive"),
     (b"\x28\xb5\x2f\xfd", "a zstd archive"),
-    (b"glTF", "a glTF mesh"),
     (b"\x7fELF", "a program"),
     (b"\xff\xfe", "a text in UTF-16"),
     (b"\xfe\xff", "a text in UTF-16"),
@@ -60,8 +61,6 @@ const FOREIGN_EXTENSIONS: &[(&str, &str)] = &[
     ("ply", "a PLY mesh"),
     ("off", "an OFF mesh"),
     ("3mf", "a 3MF mesh"),
-    ("gltf", "a glTF mesh"),
-    ("glb", "a glTF mesh"),
 ];
 
 /// Records that begin lines of PDB files and of nothing else that has them in its first lines.
@@ -76,13 +75,18 @@ pub fn sniff(name: &str, bytes: &[u8]) -> Format {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let head = &bytes[..bytes.len().min(HEAD)];
     let start = head.trim_ascii_start();
-    if let Some((_, what)) = MAGIC.iter().find(|(magic, _)| head.starts_with(magic) || start.starts_with(magic)) {
-        return Format::Foreign(what);
-    }
     let extension = Path::new(name)
         .extension()
         .map(|extension| extension.to_string_lossy().to_ascii_lowercase())
         .unwrap_or_default();
+    let has = |word: &[u8]| memchr::memmem::find(head, word).is_some();
+    let is_gltf_text = || extension == "gltf" || has(b"\"asset\"");
+    if head.starts_with(b"glTF") || start.starts_with(b"{") && is_gltf_text() {
+        return Format::Gltf;
+    }
+    if let Some((_, what)) = MAGIC.iter().find(|(magic, _)| head.starts_with(magic) || start.starts_with(magic)) {
+        return Format::Foreign(what);
+    }
     by_lines(head, &extension).unwrap_or_else(|| by_extension(&extension))
 }
 
@@ -146,6 +150,7 @@ fn by_extension(extension: &str) -> Format {
     match extension {
         "pdb" | "ent" | "pdb1" | "brk" | "pdbqt" => Format::Pdb,
         "xyz" => Format::Xyz,
+        "gltf" | "glb" => Format::Gltf,
         _ => FOREIGN_EXTENSIONS
             .iter()
             .find(|(foreign, _)| *foreign == extension)
