@@ -72,6 +72,14 @@ pub enum SceneError {
         /// What is wrong, and the way out after a semicolon.
         what: String,
     },
+    /// Parts of the file contradict each other, or what they need is missing.
+    #[error("{file}: {what}")]
+    Damaged {
+        /// The file as the caller named it.
+        file: String,
+        /// What is wrong and where, and the way out after a semicolon.
+        what: String,
+    },
     /// The file is of a kind that this reader does not read.
     #[error("{file}: {what}")]
     Unsupported {

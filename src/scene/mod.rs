@@ -1,4 +1,4 @@
-//! Scenes: what a style is applied to. No GPU and no JSON in here.
+//! Scenes: what a style is applied to. No GPU and no styles in here.
 //!
 //! [`Scene::load`] reads a file of molecules or meshes, mends what it can, and says in the [`Report`] of each of
 //! [`Scene::files`] what it mended, guessed or skipped. What it cannot mend is a [`SceneError`] with file, line and a way

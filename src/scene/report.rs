@@ -58,6 +58,30 @@ note_kinds! {
     CountMended => "place" / "places": "where count or comment line and atoms disagree, mended",
     /// Text after the last atom that is neither an atom nor a frame.
     TrailingText => "line" / "lines": "after the atoms not read",
+    /// A triangle that names a vertex that is not there, or ends before its third.
+    TriangleToNowhere => "triangle" / "triangles": "left out: a vertex does not exist",
+    /// A triangle with a vertex at NaN or infinity.
+    TriangleNotFinite => "triangle" / "triangles": "left out: a coordinate is no finite number",
+    /// Points or lines of a mesh file.
+    NotTriangles => "set of points or lines" / "sets of points or lines": "left out: only triangles are drawn",
+    /// Normals or colours that do not belong to the vertices.
+    AttributeLeftOut => "list of normals or colours" / "lists of normals or colours": "left out: not as many as vertices, or damaged",
+    /// A number of a node, mesh or material that does not exist.
+    ReferenceToNowhere => "reference" / "references": "ignored: there is no such thing in the file",
+    /// A transform of NaN, infinity or absurd numbers.
+    NodeLeftOut => "node" / "nodes": "left out with all below: the transform is not made of finite numbers",
+    /// A node that is the child of two others.
+    NodeTwice => "node" / "nodes": "found in two places, drawn in the first",
+    /// A quaternion of zeros.
+    RotationMended => "rotation" / "rotations": "of zero length, taken as none",
+    /// A length in a file's header.
+    LengthMended => "length" / "lengths": "wrong in the file's header, ignored",
+    /// Scenes that are not the default.
+    SceneSkipped => "other scene" / "other scenes": "in the file, not drawn",
+    /// Textures.
+    TextureNotDrawn => "texture" / "textures": "in the file, not drawn: surfaces have the colours of their materials",
+    /// Animations, skins, morph targets.
+    NotAnimated => "animation, skin or morph" / "animations, skins and morphs": "in the file, not followed: the mesh is drawn as it is saved",
     /// Positions that single precision rounds visibly.
     CoarsePositions => "molecule" / "molecules": "so wide that positions are rounded",
     /// A face with a vertex that is NaN, infinite or no number.

@@ -1,14 +1,20 @@
 //! Importers: bytes of a file to a molecule or a mesh. One file per format.
 
+mod compact;
 mod conect;
+mod gltf;
 mod lines;
 mod models;
 mod number;
 mod pdb;
 mod side_file;
 mod sniff;
+<<<<<<< HEAD
 mod stl;
 mod vertex;
+=======
+mod tree_path;
+>>>>>>> h-gltf
 mod xyz;
 
 pub use models::ModelChoice;
@@ -46,6 +52,11 @@ impl Import<'_> {
     /// The error of a line that nothing can be made of; `what` says the way out after a semicolon.
     fn malformed(&self, line: u32, what: String) -> SceneError {
         SceneError::Malformed { file: self.file.to_string(), line, what }
+    }
+
+    /// The same for a file without lines; `byte` counts from 0.
+    fn malformed_at(&self, byte: usize, what: String) -> SceneError {
+        SceneError::MalformedAt { file: self.file.to_string(), byte: byte as u64, what }
     }
 
     /// The position of three coordinates; `None`, with a note, if one is no number.
@@ -91,7 +102,11 @@ pub(super) fn read(
     let content = match sniff(file, bytes) {
         Format::Pdb => pdb::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Xyz => xyz::read(&mut import, bytes).map(Content::Molecule)?,
+<<<<<<< HEAD
         Format::Stl => stl::read(&mut import, bytes).map(Content::Mesh)?,
+=======
+        Format::Gltf => gltf::read(&mut import, bytes).map(Content::Mesh)?,
+>>>>>>> h-gltf
         Format::Foreign(what) => {
             return unsupported(format!("is {what}, not a molecule in PDB or XYZ format; {}", way_out(what)));
         }

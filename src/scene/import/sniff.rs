@@ -13,6 +13,8 @@ pub enum Format {
     Xyz,
     /// Stereolithography, ASCII or binary.
     Stl,
+    /// glTF 2.0: JSON, or a GLB.
+    Gltf,
     /// Another known kind: what it is, with its article.
     Foreign(&'static str),
     /// Nothing that is known here.
@@ -33,7 +35,6 @@ const MAGIC: &[(&[u8], &str)] = &[
     (b"BZh", "a bzip2 archive"),
     (b"\xfd7zXZ", "an xz archive"),
     (b"\x28\xb5\x2f\xfd", "a zstd archive"),
-    (b"glTF", "a glTF mesh"),
     (b"\x7fELF", "a program"),
     (b"\xff\xfe", "a text in UTF-16"),
     (b"\xfe\xff", "a text in UTF-16"),
@@ -61,8 +62,6 @@ const FOREIGN_EXTENSIONS: &[(&str, &str)] = &[
     ("ply", "a PLY mesh"),
     ("off", "an OFF mesh"),
     ("3mf", "a 3MF mesh"),
-    ("gltf", "a glTF mesh"),
-    ("glb", "a glTF mesh"),
 ];
 
 /// Records that begin lines of PDB files and of nothing else that has them in its first lines.
@@ -83,6 +82,10 @@ pub fn sniff(name: &str, bytes: &[u8]) -> Format {
         .unwrap_or_default();
     if let Some(format) = triangles(bytes) {
         return format;
+    let has = |word: &[u8]| memchr::memmem::find(head, word).is_some();
+    let is_gltf_text = || extension == "gltf" || has(b"\"asset\"");
+    if head.starts_with(b"glTF") || start.starts_with(b"{") && is_gltf_text() {
+        return Format::Gltf;
     }
     if let Some((_, what)) = MAGIC.iter().find(|(magic, _)| head.starts_with(magic) || start.starts_with(magic)) {
         return Format::Foreign(what);
@@ -156,6 +159,7 @@ fn by_extension(extension: &str) -> Format {
         "pdb" | "ent" | "pdb1" | "brk" | "pdbqt" => Format::Pdb,
         "xyz" => Format::Xyz,
         "stl" => Format::Stl,
+        "gltf" | "glb" => Format::Gltf,
         _ => FOREIGN_EXTENSIONS
             .iter()
             .find(|(foreign, _)| *foreign == extension)
