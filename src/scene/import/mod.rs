@@ -9,12 +9,9 @@ mod number;
 mod pdb;
 mod side_file;
 mod sniff;
-<<<<<<< HEAD
 mod stl;
 mod vertex;
-=======
 mod tree_path;
->>>>>>> h-gltf
 mod xyz;
 
 pub use models::ModelChoice;
@@ -102,11 +99,8 @@ pub(super) fn read(
     let content = match sniff(file, bytes) {
         Format::Pdb => pdb::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Xyz => xyz::read(&mut import, bytes).map(Content::Molecule)?,
-<<<<<<< HEAD
         Format::Stl => stl::read(&mut import, bytes).map(Content::Mesh)?,
-=======
         Format::Gltf => gltf::read(&mut import, bytes).map(Content::Mesh)?,
->>>>>>> h-gltf
         Format::Foreign(what) => {
             return unsupported(format!("is {what}, not a molecule in PDB or XYZ format; {}", way_out(what)));
         }
