@@ -10,8 +10,8 @@ mod pdb;
 mod side_file;
 mod sniff;
 mod stl;
-mod vertex;
 mod tree_path;
+mod vertex;
 mod xyz;
 
 pub use models::ModelChoice;

@@ -82,6 +82,7 @@ pub fn sniff(name: &str, bytes: &[u8]) -> Format {
         .unwrap_or_default();
     if let Some(format) = triangles(bytes) {
         return format;
+    }
     let has = |word: &[u8]| memchr::memmem::find(head, word).is_some();
     let is_gltf_text = || extension == "gltf" || has(b"\"asset\"");
     if head.starts_with(b"glTF") || start.starts_with(b"{") && is_gltf_text() {
