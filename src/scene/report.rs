@@ -1,5 +1,6 @@
 //! What an importer mended, guessed or skipped, with the lines where it did.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// How many lines of one kind are named; the rest is only counted, so that a damaged million-atom file costs no memory.
@@ -134,13 +135,13 @@ pub struct Note {
 pub struct Report {
     /// The first few notes of each kind, in the order of the file.
     pub entries: Vec<Note>,
-    counts: [u32; NoteKind::ALL.len()],
+    counts: BTreeMap<NoteKind, u32>,
 }
 
 impl Report {
     /// Notes one thing; `text` is asked for only if the note is listed.
     pub fn note(&mut self, kind: NoteKind, line: impl Into<Option<u32>>, text: impl FnOnce() -> String) {
-        let count = &mut self.counts[kind as usize];
+        let count = self.counts.entry(kind).or_default();
         *count = count.saturating_add(1);
         if *count as usize <= LISTED_PER_KIND {
             self.entries.push(Note { line: line.into(), kind, text: text() });
@@ -151,13 +152,14 @@ impl Report {
     pub fn note_many(&mut self, kind: NoteKind, count: u32, text: impl FnOnce() -> String) {
         if count > 0 {
             self.note(kind, None, text);
-            self.counts[kind as usize] = self.counts[kind as usize].saturating_add(count - 1);
+            let noted = self.counts.entry(kind).or_default();
+            *noted = noted.saturating_add(count - 1);
         }
     }
 
     /// How many things of a kind were noted, listed or not.
     pub fn count(&self, kind: NoteKind) -> u32 {
-        self.counts[kind as usize]
+        self.counts.get(&kind).copied().unwrap_or(0)
     }
 
     /// Whether nothing was noted.
