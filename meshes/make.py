@@ -429,7 +429,7 @@ def tooth(teeth, module, helix, play=0.06):
     base = r * math.cos(pressure)
     top = r + addendum
     first = flank[-1][0]
-    for q in steps(math.sqrt(first - base), math.sqrt(top - base), 4)[1:]:
+    for q in steps(math.sqrt(first - base), math.sqrt(top - base), 4 if teeth < 40 else 3)[1:]:
         q = base + q * q
         a = math.acos(base / q)
         angle = inv(a) - half
@@ -513,10 +513,11 @@ BOLTS = [(x, z) for x in (-187.0, -86.0, 6.0, 138.0, 187.0) for z in (-65.5, 65.
 DOWELS = [(-191.0, -30.0), (191.0, 30.0)]
 BOLT_HOLE, DOWEL = 4.5, 4.0
 CAP_SCREWS = [(31.5, 2.5, [TAU * (k + 0.5) / 4 for k in range(4)])] * 2 + [(46.5, 3.0, [TAU * (k + 0.5) / 6 for k in range(6)])]
-SIGHT = (-52.0, 0.0, 15.0)  # y, z and radius of the hole in the wall at the output end
-DRAIN = (-80.0, 0.0, 8.0)
+SIGHT = (-46.0, 20.0, 15.0)  # y, z and radius of the hole in the wall at the output end
+DRAIN = (-80.0, -20.0, 8.0)
 # The opening on the flat of the cover between the arcs about the last two shafts: half lengths along x and z, corner.
 OPENING = (30.0, 24.0, 6.0)
+LID_SCREWS = [(x, z) for x in (-36.0, 36.0) for z in (-28.0, 28.0)]
 # A rib under each boss of the base, in plan from its shaft: out of the wall, round in front, back into the wall.
 RIB_HALF = 6.0
 RIB = outline([(RIB_HALF, SIDE), (RIB_HALF, 72.0, 4.0), (-RIB_HALF, 72.0, 4.0), (-RIB_HALF, SIDE)], False)
@@ -660,10 +661,13 @@ def housing_cover():
         place, n, half = flat_frame(wall)
         opening = box(-OPENING[0], OPENING[0], -OPENING[1], OPENING[1], OPENING[2], 4)
         straight = width - radius
-        solid.flat([[(-half, -straight), (half, -straight), (half, straight), (-half, straight)], points(opening)], place, scale(n, float(facing)))
+        screws = [circle(*c, 2.5, 12) for c in LID_SCREWS]
+        solid.flat([points(box(-half, half, -straight, straight)), points(opening), *screws], place, scale(n, float(facing)))
         if outside:
             deep = flat_frame(WALL)[0]
             solid.wall([[(p, (-m[0], -m[1])) for p, m in piece] for piece in opening], deep, place)
+            for c in LID_SCREWS:
+                solid.hole(c, 2.5, 12, deep, place)
         for z in (-width, width):
             profile = path(crown(wall + radius, foot))
             loops = [profile]
@@ -741,3 +745,584 @@ def housing_base():
         bottom += bottoms
     solid.flat(bottom, ground(FLOOR), (0.0, -1.0, 0.0))
     return solid
+
+
+# --- small parts ------------------------------------------------------------
+
+
+def hexagon(solid, across, low, high, chamfers, columns=4):
+    """Six sides with 30 degree chamfers, below and above if so told; answers the loop of what is left of each end."""
+    inside, tilt = across / 2 * 0.96, math.tan(math.radians(30))
+    count = 6 * columns
+    corners = []
+    for i in range(count + 1):
+        a = TAU * i / count
+        radius = across / 2 / math.cos((a % (TAU / 6)) - TAU / 12)
+        corners.append((radius * math.cos(a), radius * math.sin(a), max(0.0, radius - inside) * tilt))
+    flat = [(math.cos(TAU * (k + 0.5) / 6), math.sin(TAU * (k + 0.5) / 6), 0.0) for k in range(6)]
+    for k in range(6):
+        side = corners[k * columns : (k + 1) * columns + 1]
+        solid.grid([[((x, y, z + s * d * c), flat[k]) for x, y, d in side] for z, s, c in ((low, 1, chamfers[0]), (high, -1, chamfers[1]))])
+    loops = []
+    for z, s, chamfer in ((low, 1, chamfers[0]), (high, -1, chamfers[1])):
+        if chamfer:
+            ring = circle(0, 0, inside, count) + [(inside, 0.0)]
+            normals = [unit((x * tilt / inside, y * tilt / inside, -s)) for x, y in ring]
+            solid.grid([[((x, y, z + s * d), n) for (x, y, d), n in zip(corners, normals)], [((x, y, z), n) for (x, y), n in zip(ring, normals)]])
+            loops.append(ring[:-1])
+        else:
+            loops.append([(x, y) for x, y, _ in corners[:-1]])
+    return loops
+
+
+def hex_bolt(across, head, radius, length, columns=4, above=()):
+    """Head upward from z = 0; `above` continues the top of the head, as (radius, z), to the axis."""
+    solid = Solid()
+    bottom, top = hexagon(solid, across, 0.0, head, (False, True), columns)
+    count = 6 * columns
+    solid.flat([bottom, circle(0, 0, radius, count)], level(0.0), (0.0, 0.0, -1.0))
+    solid.revolve(outline([(0, -length), (radius, -length, -0.8), (radius, 0)], False), count)
+    solid.revolve(outline([(top[0][0], head), *above, (0, above[-1][1] if above else head)], False, 4), count)
+    return solid
+
+
+def nut(across, height, radius):
+    solid = Solid()
+    bottom, _ = hexagon(solid, across, 0.0, height, (True, True), 4)
+    r = bottom[0][0]
+    solid.revolve(outline([(r, height), (radius, height, -0.4), (radius, 0, -0.4), (r, 0)], False), 24)
+    return solid
+
+
+def socket_screw(radius, length, head_radius, head, across):
+    """Head upward from z = 0, with a socket half as deep as the head is high."""
+    solid = Solid()
+    count, bottom = 18, head / 2
+    top = head_radius - 0.6
+    solid.revolve(outline([(0, -length), (radius, -length, -0.6), (radius, 0), (head_radius, 0), (head_radius, head, -0.6), (top, head)], False), count)
+    corners = circle(0, 0, across / math.sqrt(3), 6)
+    solid.flat([circle(0, 0, top, count), corners], level(head), (0.0, 0.0, 1.0))
+    solid.wall([line(q, p) for p, q in zip(corners, corners[1:] + corners[:1])], level(bottom), level(head))
+    solid.flat([corners], level(bottom), (0.0, 0.0, 1.0))
+    return solid
+
+
+def ring(inside, outside, width, count, chamfer=0.4):
+    """From z = 0 upward."""
+    return revolved([(inside, 0), (outside, 0, -chamfer), (outside, width, -chamfer), (inside, width)], count)
+
+
+def ball(radius):
+    """An icosahedron, each face in nine, blown up."""
+    solid = Solid()
+    golden = (1 + math.sqrt(5)) / 2
+    corners = [p for s in (-1, 1) for t in (-golden, golden) for p in ((0, s, t), (s, t, 0), (t, 0, s))]
+    near = lambda a, b: abs(math.dist(a, b) - 2) < 1e-6
+    for i, a in enumerate(corners):
+        for j, b in enumerate(corners[:i]):
+            for c in corners[:j]:
+                if near(a, b) and near(b, c) and near(c, a):
+                    at = lambda u, v: unit(add(scale(a, 3 - u - v), add(scale(b, u), scale(c, v))))
+                    for u in range(3):
+                        for v in range(3 - u):
+                            cells = [((u, v), (u + 1, v), (u, v + 1))]
+                            if u + v < 2:
+                                cells.append(((u + 1, v), (u + 1, v + 1), (u, v + 1)))
+                            for cell in cells:
+                                solid.triangle(*[(scale(at(*p), radius), at(*p)) for p in cell])
+    return solid
+
+
+class Bearing:
+    """A deep groove ball bearing about z; its cage is open downward."""
+
+    def __init__(self, bore, outside, width, ball_radius, balls):
+        self.bore, self.outside, self.width, self.ball, self.balls = bore, outside, width, ball_radius, balls
+        self.pitch = (bore + outside) / 2
+        self.groove = 1.04 * ball_radius
+        self.lands = (self.pitch - 0.55 * ball_radius, self.pitch + 0.55 * ball_radius)
+
+    def race(self, outer):
+        half = self.width / 2
+        land = self.lands[1] if outer else self.lands[0]
+        opening = math.acos((land - self.pitch) / self.groove)
+        deep = self.groove * math.sin(opening)
+        solid = Solid()
+        if outer:
+            r = self.outside - FIT / 2
+            corners = [(land, -deep), (land, -half), (r, -half, 1.0), (r, half, 1.0), (land, half), (land, deep)]
+            groove = arc(self.pitch, 0, self.groove, opening, -opening, 6, -1)
+        else:
+            r = self.bore
+            corners = [(land, deep), (land, half), (r, half, 1.0), (r, -half, 1.0), (land, -half), (land, -deep)]
+            groove = arc(self.pitch, 0, self.groove, TAU - opening, opening, 6, -1)
+        solid.revolve([*outline(corners, False, 2), groove], 45)
+        return solid
+
+    def cage(self):
+        solid = Solid()
+        pocket, reach, high = self.ball + 0.2, math.radians(84), self.ball + 1.5
+        edge = []  # of all pockets: (angle about z, height, tangential and axial part of the normal)
+        pieces = []
+        for k in range(self.balls):
+            piece = []
+            for t in steps(-reach, reach, 8):
+                piece.append((TAU * k / self.balls + math.asin(pocket * math.sin(t) / self.pitch), pocket * math.cos(t), -math.sin(t), -math.cos(t)))
+            pieces.append(piece)
+            a, b = piece[-1], TAU / self.balls + pieces[-1][0][0]
+            pieces.append([(a[0], a[1], 0.0, -1.0), ((a[0] + b) / 2, a[1], 0.0, -1.0), (b, a[1], 0.0, -1.0)])
+        radii = [self.pitch - 0.42 * self.ball, self.pitch + 0.42 * self.ball]
+        for piece in pieces:
+            around = [(math.cos(a), math.sin(a), z, u, w) for a, z, u, w in piece]
+            solid.grid([[((r * c, r * s, z), (-u * s, u * c, w)) for c, s, z, u, w in around] for r in radii])
+            solid.grid([[((r * c, r * s, high), (0.0, 0.0, 1.0)) for c, s, *_ in around] for r in radii])
+            for r, facing in zip(radii, (-1, 1)):
+                solid.grid([[((r * c, r * s, h or z), (facing * c, facing * s, 0.0)) for c, s, z, *_ in around] for h in (0.0, high)])
+        return solid
+
+
+def shaft(corners, count=48, keyway=None):
+    """From (radius, z) along the outside. `keyway`: radius and limits of its cylinder, limits of the slot, its width and its bottom's height.
+
+    The slot has round ends and points to +y.
+    """
+    solid = Solid()
+    pieces = outline(corners, False, 3)
+    if keyway is None:
+        solid.revolve(pieces, count)
+        return solid
+    radius, low, high, start, stop, width, bottom = keyway
+    chosen = [p for p in pieces if p[0][0][0] == p[-1][0][0] == radius and low - 1e-6 < p[0][0][1] < p[-1][0][1] < high + 1e-6]
+    (piece,) = chosen
+    solid.revolve([p for p in pieces if p is not piece], count)
+    low, high = piece[0][0][1], piece[-1][0][1]
+    step = TAU / count
+
+    def at(a):
+        """On the facets of the neighbours."""
+        q = radius * math.cos(step / 2) / math.cos((a % step) - step / 2)
+        return q * math.cos(a), q * math.sin(a)
+
+    first = math.acos(width / 2 / radius)
+    last = math.pi - first
+    regular = [step * i for i in range(2 * count)]
+    bend = {math.acos(width / 2 * math.cos(t) / radius) for t in steps(0, math.pi, 10)}
+    slot = sorted(a for a in {*bend, *regular} if first - 1e-9 <= a <= last + 1e-9)
+    half = at(slot[0])[0]
+    rest = [last, *[a for a in regular if last + 1e-6 < a < first + TAU - 1e-6], first + TAU]
+    solid.grid([[((*at(a), z), (math.cos(a), math.sin(a), 0.0)) for a in rest] for z in (low, high)])
+    ends = []
+    for z, facing, limit in ((start + half, -1, low), (stop - half, 1, high)):
+        curve = [(a, z + facing * math.sqrt(max(0.0, half**2 - at(a)[0] ** 2))) for a in slot]
+        solid.grid([[((*at(a), q), (math.cos(a), math.sin(a), 0.0)) for a, q in curve], [((*at(a), limit), (math.cos(a), math.sin(a), 0.0)) for a in slot]])
+        wall = [(at(a), q, (-at(a)[0] / half, 0.0, (z - q) / half)) for a, q in curve]
+        solid.grid([[((x, bottom if deep else y, q), n) for (x, y), q, n in wall] for deep in (False, True)])
+        ends.append([((x, y), q) for (x, y), q, _ in wall])
+    for i in (0, -1):
+        (x, y), z = ends[0][i]
+        top = ends[1][i][1]
+        solid.grid([[((x, h, q), (-x / half, 0.0, 0.0)) for q in (z, top)] for h in (bottom, y)])
+    loop = [(x, q) for (x, _), q in ends[0]] + [(x, q) for (x, _), q in reversed(ends[1])]
+    solid.flat([loop], ground(bottom), (0.0, 1.0, 0.0))
+    return solid
+
+
+def feather_key(width, height, length):
+    """Along z, from y = 0 upward, with round ends."""
+    solid = Solid()
+    plan = outline([(-width / 2, 0, width / 2 - 1e-4), (width / 2, 0, width / 2 - 1e-4), (width / 2, length, width / 2 - 1e-4), (-width / 2, length, width / 2 - 1e-4)], True, 6)
+    cut = 0.4
+    top = shifted(plan, cut)
+    solid.wall(plan, ground(0.0), ground(height - cut))
+    for low, high in zip(plan, top):
+        solid.grid([[((p[0], height - cut, p[1]), unit((n[0], 1.0, n[1]))) for p, n in low], [((p[0], height, p[1]), unit((n[0], 1.0, n[1]))) for p, n in high]])
+    solid.flat([points(plan)], ground(0.0), (0.0, -1.0, 0.0))
+    solid.flat([points(top)], ground(height), (0.0, 1.0, 0.0))
+    return solid
+
+
+def end_cap(i, thick, spigot, recess, pocket=None, bore=None):
+    """Over a bearing: its flange from z = 0 upward, a spigot of the given depth into the bore; closed, or with a pocket for a seal."""
+    solid = Solid()
+    rim, seat, count = BOSS[i] - 0.5, BORE[i] - FIT, 48
+    solid.revolve(outline([(rim, 0), (rim, thick, 1.2), (rim - 1.25, thick)], False, 3), count)
+    under = [(recess, -3), (recess, -spigot), (seat, -spigot, -1), (seat, 0)]
+    if pocket:
+        inner = pocket + 0.6
+        path_in = [(inner, thick), (pocket, thick - 0.6), (pocket, 1), (bore, 1), (bore, -3), *under]
+    else:
+        inner = recess + 1
+        path_in = [(inner, thick), (inner - 2.5, thick - 1.5, 1.0), (0, thick - 1.5)]
+        solid.revolve(outline([(0, -3), *under], False, 3), count)
+    solid.revolve(outline(path_in, False, 3), count)
+    on, radius, angles = CAP_SCREWS[i]
+    holes = [solid.hole((on * math.cos(a), on * math.sin(a)), radius + 0.3, 14, level(0.0), level(thick)) for a in angles]
+    solid.flat([circle(0, 0, rim - 1.25, count), circle(0, 0, inner, count), *holes], level(thick), (0.0, 0.0, 1.0))
+    solid.flat([circle(0, 0, rim, count), circle(0, 0, seat, count), *holes], level(0.0), (0.0, 0.0, -1.0))
+    return solid
+
+
+def seal(inside, outside, width):
+    lip = [(inside + 2.4, width - 1.6), (inside + 1.6, width), (inside + 0.04, width - 1.5), (inside + 1, width - 3.2)]
+    return revolved([(inside + 1, 0), (outside, 0, -0.6), (outside, width, -0.6), (outside - 3.2, width), (outside - 4.2, width - 1.6), *lip], 48)
+
+
+def plate(half_x, half_z, corner, thick, holes, chamfer=0.0, opening=None):
+    """Flat on y = 0; `holes`: (x, z, radius)."""
+    solid = Solid()
+    plan = box(-half_x, half_x, -half_z, half_z, corner, 5)
+    solid.wall(plan, ground(0.0), ground(thick - chamfer))
+    top = shifted(plan, chamfer)
+    if chamfer:
+        for low, high in zip(plan, top):
+            rows = [[((p[0], y, p[1]), unit((n[0], 1.0, n[1]))) for p, n in piece] for piece, y in ((low, thick - chamfer), (high, thick))]
+            solid.grid(rows)
+    inside = [solid.hole((x, z), r, 16, ground(0.0), ground(thick)) for x, z, r in holes]
+    if opening:
+        solid.wall([[(p, (-n[0], -n[1])) for p, n in piece] for piece in opening], ground(0.0), ground(thick))
+        inside.append(points(opening))
+    solid.flat([points(plan), *inside], ground(0.0), (0.0, -1.0, 0.0))
+    solid.flat([points(top), *inside], ground(thick), (0.0, 1.0, 0.0))
+    return solid
+
+
+# --- the assembly -----------------------------------------------------------
+
+# Base colour (linear), metallic, roughness.
+MATERIALS = {
+    "Cast iron": ((0.055, 0.13, 0.17, 1.0), 0.1, 0.55),
+    "Steel": ((0.56, 0.57, 0.58, 1.0), 1.0, 0.42),
+    "Hardened steel": ((0.46, 0.46, 0.49, 1.0), 1.0, 0.26),
+    "Zinc-plated": ((0.62, 0.63, 0.60, 1.0), 1.0, 0.36),
+    "Brass": ((0.80, 0.56, 0.22, 1.0), 1.0, 0.3),
+    "Rubber": ((0.014, 0.014, 0.016, 1.0), 0.0, 0.8),
+    "Glass": ((0.80, 0.90, 0.86, 0.4), 0.0, 0.05),
+}
+
+
+def quaternion(axis, degrees):
+    half = math.radians(degrees) / 2
+    return tuple(math.sin(half) if i == axis else 0.0 for i in range(3)) + (math.cos(half),)
+
+
+def after(p, q):
+    """The turn p after the turn q."""
+    a, b = p[:3], q[:3]
+    v = add(cross(a, b), add(scale(b, p[3]), scale(a, q[3])))
+    return (*v, p[3] * q[3] - dot(a, b))
+
+
+UP = quaternion(0, -90)  # turns z to y
+DOWN = quaternion(0, 90)
+BACK = quaternion(1, 180)  # turns z to -z
+RIGHT = quaternion(1, 90)  # turns z to x
+
+
+class Node:
+    def __init__(self, name, mesh=None, at=(0.0, 0.0, 0.0), turn=None, mirrored=False):
+        self.name, self.mesh, self.at, self.turn, self.mirrored, self.children = name, mesh, at, turn, mirrored, []
+
+    def add(self, *arguments, **named):
+        node = Node(*arguments, **named)
+        self.children.append(node)
+        return node
+
+
+class Gearbox:
+    """Meshes, each with its material, and the tree that places them."""
+
+    def __init__(self):
+        self.meshes = {}
+        self.root = Node("Reducer", turn=after(quaternion(0, 27), quaternion(1, -33)))
+        self.casing()
+        self.gears()
+        self.bearings()
+        self.fasteners()
+        self.fittings()
+
+    def mesh(self, name, material, solid):
+        self.meshes[name] = (material, solid.sewn(name))
+        return name
+
+    def casing(self):
+        casing = self.root.add("Casing")
+        casing.add("Housing base", self.mesh("housing base", "Cast iron", housing_base()))
+        casing.add("Housing cover", self.mesh("housing cover", "Cast iron", housing_cover()))
+        blind = self.mesh("end cap, small, closed", "Steel", end_cap(0, 8, 10, 22))
+        small = self.mesh("end cap, small", "Steel", end_cap(0, 8, 10, 22, 21, 14))
+        blind_large = self.mesh("end cap, large, closed", "Steel", end_cap(2, 9, 9, 35))
+        large = self.mesh("end cap, large", "Steel", end_cap(2, 9, 9, 35, 31, 21.5))
+        for number, (x, near, far) in enumerate(zip(SHAFT_X, (small, blind, large), (blind, blind, blind_large))):
+            casing.add(f"End cap {2 * number + 1}", near, (x, 0.0, FACE))
+            casing.add(f"End cap {2 * number + 2}", far, (x, 0.0, -FACE), mirrored=True)
+        casing.add("Seal input", self.mesh("seal 25 x 42 x 7", "Rubber", seal(12.5, 21 - FIT, 7)), (SHAFT_X[0], 0.0, FACE + 1))
+        casing.add("Seal output", self.mesh("seal 40 x 62 x 8", "Rubber", seal(20, 31 - FIT, 8)), (SHAFT_X[2], 0.0, FACE + 1))
+
+    def gears(self):
+        seat = 12.5 - FIT
+        x1, x2, x3 = SHAFT_X
+        helix = math.acos((21 + 67) * 2 / 2 / (x2 - x1))
+        corners = [(0, -67), (2.5, -71), (seat, -71, -1), (seat, -54), (14 - FIT, -54, -0.4), (14 - FIT, -9), (18, -9, -0.6), (18, -5, -0.6)]
+        corners += [(15.5, -5, 2), (15.5, 54, -0.6), (seat, 54), (seat, 92, -0.6), (11, 92, 1), (11, 142, -1.2), (2.5, 142), (0, 138)]
+        group = self.root.add("Input stage", at=(x1, 0.0, 0.0))
+        group.add("Input shaft", self.mesh("input shaft", "Steel", shaft(corners, 48, (11, 92, 142, 98, 134, 6 + FIT, 11 - 3.5))))
+        group.add("Key input", self.mesh("key 6 x 6 x 36", "Steel", feather_key(6, 6, 36 - FIT)), (0.0, 11 - 3.5 + FIT, 98 + FIT / 2))
+        group.add("Gear 1", self.mesh("gear, 21 teeth, module 2", "Hardened steel", gear(21, 2, 28, 14, helix, 1, 4, 2)), (0.0, 0.0, -23.0))
+        spacer = self.mesh("spacer 28 x 35 x 17", "Steel", ring(14, 17.5, 17, 42))
+        group.add("Spacer 1", spacer, (0.0, 0.0, -54.0))
+
+        group = self.root.add("Intermediate stage", at=(x2, 0.0, 0.0))
+        corners = [(0, -67), (2.5, -71), (seat, -71, -1), (seat, -54), (15 - FIT, -54, -0.4), (15 - FIT, -9), (20, -9, -0.8), (20, -1, -0.8)]
+        corners += [(15 - FIT, -1), (15 - FIT, 54, -0.4), (seat, 54), (seat, 71, -1), (2.5, 71), (0, 67)]
+        group.add("Intermediate shaft", self.mesh("intermediate shaft", "Steel", shaft(corners, 42)))
+        wheel = gear(67, 2, 24, 15, helix, -1, 2, 1, (58, 25, 28, 9, 6, 41.5, 8))
+        group.add("Gear 2", self.mesh("gear, 67 teeth, module 2", "Hardened steel", wheel), (0.0, 0.0, -23.0))
+        group.add("Gear 3", self.mesh("gear, 21 teeth, module 2.5", "Hardened steel", gear(21, 2.5, 38, 15, rings=2)), (0.0, 0.0, 18.0))
+        spacer = self.mesh("spacer 30 x 36 x 17", "Steel", ring(15, 18, 17, 42))
+        group.add("Spacer 2", spacer, (0.0, 0.0, -54.0))
+        group.add("Spacer 3", spacer, (0.0, 0.0, 37.0))
+
+        group = self.root.add("Output stage", at=(x3, 0.0, 0.0))
+        seat = 20 - FIT
+        corners = [(0, -66), (3, -72), (seat, -72, -1), (seat, -52), (24, -52, -0.6), (24, -10, 2), (29, -10, -0.8), (29, -2, -0.8), (23 - FIT, -2)]
+        corners += [(23 - FIT, 52, -0.5), (seat, 52), (seat, 94, -0.6), (19, 94, 0.6), (19, 166, -1.6), (3, 166), (0, 160)]
+        group.add("Output shaft", self.mesh("output shaft", "Steel", shaft(corners, 60, (19, 94, 166, 104, 156, 10 + FIT, 19 - 5))))
+        group.add("Key output", self.mesh("key 10 x 8 x 52", "Steel", feather_key(10, 8, 52 - FIT)), (0.0, 19 - 5 + FIT, 104 + FIT / 2))
+        wheel = gear(69, 2.5, 34, 23, web=(75, 36, 40, 12, 6, 55.5, 11.5))
+        group.add("Gear 4", self.mesh("gear, 69 teeth, module 2.5", "Hardened steel", wheel), (0.0, 0.0, 18.0))
+        group.add("Spacer 4", self.mesh("spacer 46 x 52 x 14", "Steel", ring(23, 26, 14, 48)), (0.0, 0.0, 38.0))
+
+    def bearings(self):
+        group = self.root.add("Bearings")
+        number = 0
+        for kind, dimensions, z, shafts in (("6205", (12.5, 26, 15, 3.97, 9), 61.5, SHAFT_X[:2]), ("6208", (20, 40, 18, 5.95, 9), 61.0, SHAFT_X[2:])):
+            bearing = Bearing(*dimensions)
+            outer = self.mesh(f"{kind} outer ring", "Hardened steel", bearing.race(True))
+            inner = self.mesh(f"{kind} inner ring", "Hardened steel", bearing.race(False))
+            cage = self.mesh(f"{kind} cage", "Brass", bearing.cage())
+            sphere = self.mesh(f"{kind} ball", "Hardened steel", ball(bearing.ball))
+            for x in shafts:
+                for side in (1, -1):
+                    number += 1
+                    part = group.add(f"Bearing {number}", None, (x, 0.0, side * z), mirrored=side < 0)
+                    part.add(f"Bearing {number} outer ring", outer)
+                    part.add(f"Bearing {number} inner ring", inner)
+                    # Each set of balls stands where it came to rest.
+                    rest = quaternion(2, 13.0 * number)
+                    part.add(f"Bearing {number} cage", cage, turn=rest)
+                    balls = part.add(f"Bearing {number} balls", turn=rest)
+                    for k, (a, b) in enumerate(circle(0, 0, bearing.pitch, bearing.balls), 1):
+                        balls.add(f"Bearing {number} ball {k}", sphere, (a, b, 0.0))
+
+    def fasteners(self):
+        bolts = self.root.add("Fasteners")
+        bolt = self.mesh("bolt M8 x 40", "Zinc-plated", hex_bolt(13, 5.3, 3.95, 40))
+        m8 = self.mesh("nut M8", "Zinc-plated", nut(13, 6.8, 4.02))
+        washer = self.mesh("washer 8.4 x 16", "Zinc-plated", ring(4.2, 8, 1.6, 24, 0.3))
+        for k, (x, z) in enumerate(BOLTS, 1):
+            bolts.add(f"Bolt {k}", bolt, (x, FLANGE + 1.6, z), after(UP, quaternion(2, 37.0 * k)))
+            bolts.add(f"Washer {2 * k - 1}", washer, (x, FLANGE, z), UP)
+            bolts.add(f"Washer {2 * k}", washer, (x, -FLANGE, z), DOWN)
+            bolts.add(f"Nut {k}", m8, (x, -FLANGE - 1.6, z), after(DOWN, quaternion(2, 23.0 * k)))
+        pin = self.mesh("dowel pin 8 x 28", "Steel", revolved([(0, -14), (DOWEL - FIT, -14, -1), (DOWEL - FIT, 14, -0.6), (0, 14)], 20, False))
+        for k, (x, z) in enumerate(DOWELS, 1):
+            bolts.add(f"Dowel pin {k}", pin, (x, 0.5, z), UP)
+        m5 = self.mesh("screw M5 x 16", "Zinc-plated", socket_screw(2.44, 16, 4.25, 5, 4))
+        m6 = self.mesh("screw M6 x 20", "Zinc-plated", socket_screw(2.94, 20, 5, 6, 5))
+        number = 0
+        for x, (on, _, angles), mesh, thick in zip(SHAFT_X, CAP_SCREWS, (m5, m5, m6), (8, 8, 9)):
+            for side in (1, -1):
+                for a in angles:
+                    number += 1
+                    spin = quaternion(2, 41.0 * number)
+                    bolts.add(f"Screw {number}", mesh, (x + on * math.cos(a), on * math.sin(a), side * (FACE + thick)), spin if side > 0 else after(BACK, spin))
+        place, n, _ = flat_frame(0.0)
+        self.tilt = quaternion(2, math.degrees(math.atan2(n[1], n[0])) - 90)
+        for x, z in LID_SCREWS:
+            number += 1
+            bolts.add(f"Screw {number}", m5, add(place((x, z)), scale(n, 6.0)), after(self.tilt, after(UP, quaternion(2, 41.0 * number))))
+
+    def fittings(self):
+        fittings = self.root.add("Fittings")
+        place, n, _ = flat_frame(0.0)
+        at = lambda height: add(place((0.0, 0.0)), scale(n, height))
+        screws = [(x, z, 2.8) for x, z in LID_SCREWS]
+        opening = box(-OPENING[0], OPENING[0], -OPENING[1], OPENING[1], OPENING[2])
+        fittings.add("Gasket", self.mesh("gasket", "Rubber", plate(44, 36, 9, 1.0, screws, 0.0, opening)), at(0.0), self.tilt)
+        fittings.add("Inspection lid", self.mesh("inspection lid", "Steel", plate(44, 36, 9, 5.0, [*screws, (0.0, 0.0, 6.0)], 0.8)), at(1.0), self.tilt)
+        above = [(5.5, 6), (5.5, 9, 0.8), (11.5, 9, 1.0), (11.5, 17, 2.5), (8.5, 19.5, 2.0)]
+        breather = hex_bolt(17, 6, 5.9, 10, 4, above)
+        fittings.add("Breather", self.mesh("breather", "Brass", breather), at(6.0), after(self.tilt, UP))
+        x = ENDS[1]
+        corners = [(10.5, -9), (14.9, -9, -0.8), (14.9, 0), (20, 0), (20, 6, 1.5), (13.6, 6), (12.5, 4.9), (12.5, -2), (10.5, -2)]
+        fittings.add("Sight glass ring", self.mesh("sight glass ring", "Brass", revolved(corners, 40)), (x, *SIGHT[:2]), RIGHT)
+        glass = [(0, -1.9), (12.5 - FIT, -1.9), (12.5 - FIT, 3.0, -0.4), (8, 3.4), (0, 3.6)]
+        fittings.add("Sight glass", self.mesh("sight glass", "Glass", revolved(glass, 40, False)), (x, *SIGHT[:2]), RIGHT)
+        fittings.add("Drain washer", self.mesh("drain washer", "Brass", ring(8.05, 11.5, 1.5, 24)), (x, *DRAIN[:2]), RIGHT)
+        fittings.add("Drain plug", self.mesh("drain plug", "Zinc-plated", hex_bolt(17, 7, 7.94, 12)), (x + 1.5, *DRAIN[:2]), RIGHT)
+
+
+# --- the file ---------------------------------------------------------------
+
+
+def number(value, decimals):
+    """Rounded, so that another machine's last bit of a sine is not seen; without a negative zero."""
+    return round(value, decimals) + 0.0
+
+
+def glb(box_):
+    materials, meshes, nodes, accessors = list(MATERIALS), [], [], []
+    places, normals, indices = bytearray(), bytearray(), bytearray()
+    index_of = {}
+    for name, (material, solid) in box_.meshes.items():
+        vertices, order = {}, []
+        for triangle in solid.triangles:
+            for p, n in triangle:
+                vertex = (*[number(c, 4) for c in p], *[number(c, 3) for c in unit(n)])
+                order.append(vertices.setdefault(vertex, len(vertices)))
+        packed = [struct.pack("<3f", *[c * 0.001 for c in v[:3]]) for v in vertices]
+        exact = list(zip(*[struct.unpack("<3f", p) for p in packed]))
+        first = len(accessors)
+        accessors.append({"bufferView": 0, "byteOffset": len(places), "componentType": 5126, "count": len(vertices), "type": "VEC3", "min": [min(c) for c in exact], "max": [max(c) for c in exact]})
+        accessors.append({"bufferView": 1, "byteOffset": len(normals), "componentType": 5126, "count": len(vertices), "type": "VEC3"})
+        places += b"".join(packed)
+        for v in vertices:
+            normals += struct.pack("<3f", *unit(v[3:]))
+        wide = len(vertices) > 65535
+        accessors.append({"bufferView": 2, "byteOffset": len(indices), "componentType": 5125 if wide else 5123, "count": len(order), "type": "SCALAR"})
+        indices += struct.pack(f"<{len(order)}{'I' if wide else 'H'}", *order)
+        indices += bytes(-len(indices) % 4)
+        primitive = {"attributes": {"POSITION": first, "NORMAL": first + 1}, "indices": first + 2, "material": materials.index(material)}
+        index_of[name] = len(meshes)
+        meshes.append({"name": name, "primitives": [primitive]})
+
+    def put(node):
+        entry = {"name": node.name}
+        nodes.append(entry)
+        where = len(nodes) - 1
+        if node.mesh:
+            entry["mesh"] = index_of[node.mesh]
+        if any(node.at):
+            entry["translation"] = [number(c * 0.001, 7) for c in node.at]
+        if node.turn:
+            entry["rotation"] = [number(c, 7) for c in node.turn]
+        if node.mirrored:
+            entry["scale"] = [1, 1, -1]
+        if node.children:
+            entry["children"] = [put(child) for child in node.children]
+        return where
+
+    put(box_.root)
+    shades = []
+    for name, (colour, metallic, rough) in MATERIALS.items():
+        shade = {"name": name, "pbrMetallicRoughness": {"baseColorFactor": colour, "metallicFactor": metallic, "roughnessFactor": rough}}
+        if colour[3] < 1:
+            shade["alphaMode"] = "BLEND"
+        shades.append(shade)
+    views, offset = [], 0
+    for part, target in ((places, 34962), (normals, 34962), (indices, 34963)):
+        views.append({"buffer": 0, "byteOffset": offset, "byteLength": len(part), "target": target})
+        offset += len(part)
+    views[0]["byteStride"] = views[1]["byteStride"] = 12
+    tree = {
+        "asset": {"version": "2.0", "generator": "restyle meshes/make.py"},
+        "scene": 0,
+        "scenes": [{"name": "Gearbox", "nodes": [0]}],
+        "nodes": nodes,
+        "meshes": meshes,
+        "materials": shades,
+        "accessors": accessors,
+        "bufferViews": views,
+        "buffers": [{"byteLength": offset}],
+    }
+    text = json.dumps(tree, separators=(",", ":")).encode("ascii")
+    text += b" " * (-len(text) % 4)
+    body = bytes(places + normals + indices)
+    head = struct.pack("<4sII", b"glTF", 2, 12 + 8 + len(text) + 8 + len(body))
+    return head + struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(body), b"BIN\0") + body
+
+
+# --- what is in it ----------------------------------------------------------
+
+
+def turn_by(q, p):
+    t = scale(cross(q[:3], p), 2.0)
+    return add(p, add(scale(t, q[3]), cross(q[:3], t)))
+
+
+def placed(box_):
+    """Each node with a mesh, and the function that puts the mesh's points into the scene."""
+
+    def walk(node, outer):
+        def put(p):
+            if node.mirrored:
+                p = (p[0], p[1], -p[2])
+            if node.turn:
+                p = turn_by(node.turn, p)
+            return outer(add(p, node.at))
+
+        if node.mesh:
+            yield node, put
+        for child in node.children:
+            yield from walk(child, put)
+
+    yield from walk(box_.root, lambda p: p)
+
+
+def layers(box_, size):
+    """Surfaces along each ray of a square grid over the scene, along -z."""
+    triangles = []
+    for node, put in placed(box_):
+        _, solid = box_.meshes[node.mesh]
+        triangles += [[put(p)[:2] for p, _ in t] for t in solid.triangles]
+    low, high = [[f(p[i] for t in triangles for p in t) for i in range(2)] for f in (min, max)]
+    cell = max(high[0] - low[0], high[1] - low[1]) / size
+    # Rays pass through the middles of the cells; an irrational shift keeps them off edges.
+    origin = [(a + b) / 2 - cell * size / 2 + cell * 0.0137 * math.sqrt(i + 2) for i, (a, b) in enumerate(zip(low, high))]
+    counts = Counter()
+    for t in triangles:
+        a, b, c = [((x - origin[0]) / cell - 0.5, (y - origin[1]) / cell - 0.5) for x, y in t]
+        if side_of(a, b, c) < 0:
+            b, c = c, b
+        for row in range(math.ceil(min(a[1], b[1], c[1])), math.floor(max(a[1], b[1], c[1])) + 1):
+            left, right = -1e9, 1e9
+            for p, q in ((a, b), (b, c), (c, a)):
+                if p[1] != q[1]:
+                    x = p[0] + (row - p[1]) * (q[0] - p[0]) / (q[1] - p[1])
+                    if q[1] < p[1]:
+                        left = max(left, x)
+                    else:
+                        right = min(right, x)
+            for column in range(math.ceil(left), math.floor(right) + 1):
+                counts[column, row] += 1
+    return sorted(counts.values())
+
+
+def main():
+    gearbox = Gearbox()
+    parts = list(placed(gearbox))
+    triangles = sum(len(gearbox.meshes[node.mesh][1].triangles) for node, _ in parts)
+    stored = sum(len(solid.triangles) for _, solid in gearbox.meshes.values())
+    data = glb(gearbox)
+    print(f"gearbox.glb: {len(parts)} parts of {len(gearbox.meshes)} meshes, {triangles} triangles ({stored} stored), {len(data)} bytes")
+    arguments = sys.argv[1:]
+    if "--layers" in arguments:
+        size = int((arguments[arguments.index("--layers") + 1 :] or ["200"])[0])
+        counts = layers(gearbox, size)
+        print(f"layers: covered {len(counts) / size**2:.3f}, median {counts[len(counts) // 2]}, mean {sum(counts) / len(counts):.2f}, maximum {counts[-1]}")
+        return 0
+    files = {"gearbox.glb": data}
+    if "--check" not in arguments:
+        for name, content in files.items():
+            (HERE / name).write_bytes(content)
+        return 0
+    found = {path.name for path in HERE.iterdir() if path.suffix == ".glb"}
+    wrong = sorted(found ^ files.keys())
+    wrong += [name for name in sorted(found & files.keys()) if (HERE / name).read_bytes() != files[name]]
+    for name in wrong:
+        print(f"{name}: differs from what make.py writes; run make.py", file=sys.stderr)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
