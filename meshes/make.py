@@ -26,7 +26,8 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 TAU = 2 * math.pi
-FIT = 0.06  # radial play of cylinders in bores: more than the sagitta of their facets, so that none shows through
+# Radial play of shafts in bores, and of what sits in the housing: more than the sagitta of the facets, so that none shows through.
+FIT, SEAT = 0.1, 0.15
 
 
 # --- vectors ----------------------------------------------------------------
@@ -450,22 +451,38 @@ def gear(teeth, module, width, bore, helix=0.0, hand=1, slices=1, rings=1, web=N
     lead = hand * math.tan(helix) / (teeth * module / math.cos(helix) / 2)
     land = [(top, left[-1][1], 0.0), (top, right[0][1], 0.0)]
     root = [(right[-1][0], right[-1][1], pitch / 2), (right[-1][0], left[0][1] + pitch, pitch / 2)]
-    heights = steps(chamfer - width / 2, width / 2 - chamfer, slices)
+    heights = steps(-width / 2, width / 2, slices)
+    # The chamfer of the tips reaches into the last facet of each flank.
+    if left[-2][0] > top - chamfer:
+        raise SystemExit(f"gear with {teeth} teeth: the chamfer cuts more than one facet")
 
-    def corner(q, angle, normal, z, k, rise=0.0):
+    def corner(q, angle, normal, z, k):
         turn = lead * z + k * pitch
-        n = (math.cos(normal + turn), math.sin(normal + turn), rise)
-        return (q * math.cos(angle + turn), q * math.sin(angle + turn), z), unit(n)
+        return (q * math.cos(angle + turn), q * math.sin(angle + turn), z), (math.cos(normal + turn), math.sin(normal + turn), 0.0)
+
+    def tip(q, angle, normal, k, end):
+        """At the chamfer: the point where the edge begins to be cut, on the way to the next slice, and the one that it is cut to."""
+        if q <= top - chamfer:
+            at = corner(q, angle, normal, end * width / 2, k)
+            return at, at
+        (a, n), (b, _) = [corner(q, angle, normal, z, k) for z in ((heights[0], heights[1]) if end < 0 else (heights[-1], heights[-2]))]
+        return (add(a, scale(sub(b, a), chamfer * slices / width)), n), (corner(top - chamfer, angle, normal, end * width / 2, k)[0], n)
 
     step = pitch / rings
-    inner = (web[0] if web else bore) + 1.0
+    inner = web[0] if web else bore + 1
     for k in range(teeth):
         for piece in (left, land, right, root):
-            solid.grid([[corner(*c, z, k) for c in piece] for z in heights])
-            for end in (-1, 1):
-                rise = float(end) if piece is land else 0.0
-                rows = [[corner(min(q, top - cut), a, n, end * (width / 2 - chamfer + cut), k, rise) for q, a, n in piece] for cut in (0.0, chamfer)]
-                solid.grid(rows)
+            smooth, sharp = (piece, []) if piece is root else (piece[:-1], piece[-2:]) if piece is left else (piece[1:], piece[:2])
+            if piece is land:
+                smooth, sharp = [], land
+            solid.grid([[corner(*c, z, k) for c in smooth] for z in heights])
+            if sharp:
+                ends = [[tip(*c, k, end) for c in sharp] for end in (-1, 1)]
+                solid.grid([[e[0] for e in ends[0]], *[[corner(*c, z, k) for c in sharp] for z in heights[1:-1]], [e[0] for e in ends[1]]])
+                for end, corners in zip((-1, 1), ends):
+                    # A chamfer of 45 degrees on the land; beside it a sliver of the flank.
+                    turned = [[(p, unit(add(n, (0.0, 0.0, float(end)))) if piece is land else n) for p, n in row] for row in zip(*corners)]
+                    solid.grid(turned)
         for end in (-1, 1):
             z = end * width / 2
             loop = [corner(min(q, top - chamfer), a, n, z, k)[0][:2] for q, a, n in left + right + root[1:]]
@@ -474,24 +491,21 @@ def gear(teeth, module, width, bore, helix=0.0, hand=1, slices=1, rings=1, web=N
             loop += [(inner * math.cos(a), inner * math.sin(a)) for a in ((first + i) * step - pitch / 2 for i in range(rings, -1, -1))]
             for t in ears(loop):
                 solid.triangle(*[((*p, z), (0.0, 0.0, float(end))) for p in t])
-    top = width / 2
+    top, count = width / 2, teeth * rings
+    turn = lambda path, n: solid.revolve(outline(path, False, 2), n, -pitch / 2)
     if not web:
-        paths = [[(inner, top), (bore, top - 1), (bore, 1 - top), (inner, -top)]]
-    else:
-        rim, hub, hub_width, thick, count, on, radius = web
-        t, h = thick / 2, hub_width / 2
-        far, near = rim - 6, hub + 6
-        paths = [
-            [(inner, top), (rim, top - 1), (rim - 1.5, t, 3), (far, t)],
-            [(near, t), (hub + 1.5, t, 3), (hub, h, -1), (bore, h, -1), (bore, -h, -1), (hub, -h, -1), (hub + 1.5, -t, 3), (near, -t)],
-            [(far, -t), (rim - 1.5, -t, 3), (rim, 1 - top), (inner, -top)],
-        ]
-        holes = [solid.hole(c, radius, 16, level(-t), level(t)) for c in circle(0, 0, on, count)]
-        for z in (-t, t):
-            rings_of = [circle(0, 0, q, teeth * rings, -pitch / 2) for q in (far, near)]
-            solid.flat(rings_of + holes, level(z), (0.0, 0.0, math.copysign(1.0, z)))
-    for path in paths:
-        solid.revolve(outline(path, False, 3), teeth * rings, -pitch / 2)
+        turn([(inner, top), (bore, top - 1), (bore, 1 - top), (inner, -top)], count)
+        return solid
+    rim, hub, hub_width, thick, holes, on, radius = web
+    t, h = thick / 2, hub_width / 2
+    far, near, hub_count = rim - 5, hub + 5, 40
+    turn([(rim, top), (rim - 1.5, t, 3), (far, t)], count)
+    turn([(near, t), (hub + 1.5, t, 3), (hub, h, -1), (bore, h, -1), (bore, -h, -1), (hub, -h, -1), (hub + 1.5, -t, 3), (near, -t)], hub_count)
+    turn([(far, -t), (rim - 1.5, -t, 3), (rim, -top)], count)
+    windows = [solid.hole(c, radius, 16, level(-t), level(t)) for c in circle(0, 0, on, holes)]
+    for z in (-t, t):
+        edges = [circle(0, 0, far, count, -pitch / 2), circle(0, 0, near, hub_count, -pitch / 2)]
+        solid.flat(edges + windows, level(z), (0.0, 0.0, math.copysign(1.0, z)))
     return solid
 
 
@@ -546,7 +560,7 @@ def crown(inset, foot):
     """The cover's profile from its right foot to its left one, arcs by arcs: pieces of (point, normal)."""
     radii = [r - inset for r in CROWN]
     ends = [math.pi - math.asin(foot / radii[0]), tangent(0), tangent(1), math.asin(foot / radii[2])]
-    pieces = [arc(SHAFT_X[i], 0, radii[i], ends[i + 1], ends[i], n) for i, n in ((2, 14), (1, 6), (0, 8))]
+    pieces = [arc(SHAFT_X[i], 0, radii[i], ends[i + 1], ends[i], n) for i, n in ((2, 14), (1, 5), (0, 8))]
     straight = [[pieces[0][-1], pieces[1][0]], [pieces[1][-1], pieces[2][0]]]
     return [pieces[0], straight[0], pieces[1], straight[1], pieces[2]]
 
@@ -561,15 +575,15 @@ def flat_frame(inset):
 
 def boss_angles(radius):
     """From 0 to pi, with the heights of the flange's edge among them."""
-    low = [0.0] + [math.asin((FLANGE - below) / radius) for _, below, _, _ in rounding(EDGE, 3)]
-    return low, steps(low[-1], math.pi - low[-1], 20)
+    low = [0.0] + [math.asin((FLANGE - below) / radius) for _, below, _, _ in rounding(EDGE, 2)]
+    return low, steps(low[-1], math.pi - low[-1], 18)
 
 
 def flange_half(solid, up, ribs):
     """What cover and base have alike: flange, bosses, bores and holes, upward (1) or downward (-1) from y = 0.
     """
     top = up * FLANGE
-    lip = rounding(EDGE, 3)
+    lip = rounding(EDGE, 2)
     # The ends of the flange and its round corners; the long sides are between the bosses.
     plan = box(-FLANGE_X, FLANGE_X, -FLANGE_Z, FLANGE_Z, 16.0, 6)
     for piece in plan:
@@ -600,9 +614,9 @@ def flange_half(solid, up, ribs):
             mantle = [list(zip(low, starts))]
             if ribs:
                 first, last = math.acos(RIB_HALF / r), math.acos(-RIB_HALF / r)
-                mantle.append([(a, SIDE) for a in steps(high[0], first, 9)])
+                mantle.append([(a, SIDE) for a in steps(high[0], first, 8)])
                 mantle.append([(math.acos(p / r), q) for p, q in path(RIB[1:-1])])
-                mantle.append([(a, SIDE) for a in steps(last, high[-1], 9)])
+                mantle.append([(a, SIDE) for a in steps(last, high[-1], 8)])
             else:
                 mantle.append([(a, SIDE) for a in high])
             mantle.append([(math.pi - a, s) for a, s in zip(low, starts)][::-1])
@@ -617,7 +631,7 @@ def flange_half(solid, up, ribs):
                 q = r - inset
                 rows.append([((x + q * math.cos(a), up * q * math.sin(a), z * (FACE - below)), (side * math.cos(a), up * side * math.sin(a), z * rise)) for a in around])
             solid.grid(rows)
-            inside = steps(0.0, math.pi, 24)
+            inside = steps(0.0, math.pi, 20)
             solid.grid([[((x + bore * math.cos(a), up * bore * math.sin(a), z * q), (-math.cos(a), -up * math.sin(a), 0.0)) for a in inside] for q in (SIDE - WALL, FACE)])
             face = [[(x + q * math.cos(a), up * q * math.sin(a)) for a in angles] for q, angles in ((r - EDGE, around), (bore, inside))]
             face = [face[0] + face[1][::-1]]
@@ -625,8 +639,8 @@ def flange_half(solid, up, ribs):
             for a in angles:
                 if math.sin(a) * up > 0:
                     c = (x + on * math.cos(a), on * math.sin(a))
-                    face.append(solid.hole(c, radius, 12, upright(z * (FACE - 14)), upright(z * FACE)))
-                    solid.flat([circle(*c, radius, 12)], upright(z * (FACE - 14)), (0.0, 0.0, float(z)))
+                    face.append(solid.hole(c, radius, 8, upright(z * (FACE - 14)), upright(z * FACE)))
+                    solid.flat([circle(*c, radius, 8)], upright(z * (FACE - 14)), (0.0, 0.0, float(z)))
             solid.flat(face, upright(z * FACE), (0.0, 0.0, float(z)))
             below_loops.append([(x - r, z * FLANGE_Z), *[(x - r + inset, z * (FACE - below)) for inset, below, *_ in lip], *[(x + r - inset, z * (FACE - below)) for inset, below, *_ in lip[::-1]], (x + r, z * FLANGE_Z)])
             below_loops.append([(x - bore, z * (SIDE - WALL)), (x - bore, z * FACE), (x + bore, z * FACE), (x + bore, z * (SIDE - WALL))])
@@ -634,11 +648,11 @@ def flange_half(solid, up, ribs):
             top_loops.append([(x - half, z * SIDE), (x - half, z * (FLANGE_Z - EDGE)), (x + half, z * (FLANGE_Z - EDGE)), (x + half, z * SIDE)])
     for centres, radius in ((BOLTS, BOLT_HOLE), (DOWELS, DOWEL)):
         for c in centres:
-            loop = solid.hole(c, radius, 16, ground(0.0), ground(top))
+            loop = solid.hole(c, radius, 12, ground(0.0), ground(top))
             below_loops.append(loop)
             top_loops.append(loop)
     inner = SIDE - WALL
-    below_loops.append(points(box(ENDS[0] + WALL, ENDS[1] - WALL, -inner, inner, INNER_ROUND, 5)))
+    below_loops.append(points(box(ENDS[0] + WALL, ENDS[1] - WALL, -inner, inner, INNER_ROUND, 4)))
     solid.flat(below_loops, ground(0.0), (0.0, -float(up), 0.0))
     return top_loops
 
@@ -648,7 +662,7 @@ def housing_cover():
     top_loops = flange_half(solid, 1, False)
     for outside, width, wall, radius, foot, facing in ((True, SIDE, 0.0, ROUND, FLANGE, 1), (False, SIDE - WALL, WALL, INNER_ROUND, 0.0, -1)):
         rows = []
-        for inset, below, side, rise in rounding(radius, 5):
+        for inset, below, side, rise in rounding(radius, 4):
             rows.append((width - below, wall + inset, side, rise))
         rows = [(-z, inset, side, -rise) for z, inset, side, rise in reversed(rows)] + rows
         lines = []
@@ -675,7 +689,7 @@ def housing_cover():
                 if outside:
                     loops.append([(x + r * math.cos(a), r * math.sin(a)) for a in boss_angles(r)[1]])
                 else:
-                    loops.append([(x + bore * math.cos(a), bore * math.sin(a)) for a in steps(0.0, math.pi, 24)])
+                    loops.append([(x + bore * math.cos(a), bore * math.sin(a)) for a in steps(0.0, math.pi, 20)])
             solid.flat(loops, upright(z), (0.0, 0.0, math.copysign(1.0, z * facing)))
         if outside:
             ends = [(line[0][0][0], line[-1][-1][0]) for line in lines]
@@ -687,16 +701,16 @@ def housing_cover():
 def housing_base():
     solid = Solid()
     top_loops = flange_half(solid, -1, True)
-    plan = box(*ENDS, -SIDE, SIDE, ROUND, 5)
+    plan = box(*ENDS, -SIDE, SIDE, ROUND, 4)
     top_loops.append(points(plan))
     solid.flat(top_loops, ground(-FLANGE), (0.0, -1.0, 0.0))
     corners = [piece for piece in plan if len(piece) > 2]
     solid.wall(corners, ground(FLOOR), ground(-FLANGE))
-    inner = box(ENDS[0] + WALL, ENDS[1] - WALL, WALL - SIDE, SIDE - WALL, INNER_ROUND, 5)
+    inner = box(ENDS[0] + WALL, ENDS[1] - WALL, WALL - SIDE, SIDE - WALL, INNER_ROUND, 4)
     curb, bed = 6.0, FLOOR + 10.0
     solid.wall([[(p, (-n[0], -n[1])) for p, n in piece] for piece in inner if len(piece) > 2], ground(bed + curb), ground(0.0))
     for piece in inner:
-        rows = [[((p[0] - i * n[0], bed + b, p[1] - i * n[1]), (-s * n[0], t, -s * n[1])) for p, n in piece] for i, b, s, t in rounding(curb, 4)]
+        rows = [[((p[0] - i * n[0], bed + b, p[1] - i * n[1]), (-s * n[0], t, -s * n[1])) for p, n in piece] for i, b, s, t in rounding(curb, 3)]
         solid.grid(rows)
     solid.flat([points(shifted(inner, curb))], ground(bed), (0.0, 1.0, 0.0))
     # The walls at the ends, with the holes for sight glass and drain plug at one of them.
@@ -710,7 +724,7 @@ def housing_base():
             for y, z, r in (SIGHT, DRAIN):
                 solid.hole((y, z), r, 24, lambda p: (x - WALL, *p), lambda p: (x, *p))
     # The long walls, with feet, bosses and ribs.
-    foot_x, foot_z, lip = 165.0, 78.0, rounding(2.0, 3)
+    foot_x, foot_z, lip = 165.0, 78.0, rounding(2.0, 2)
     bottom = [points(plan)]
     for z in (-1, 1):
         foot = outline([(-foot_x, -SIDE), (-foot_x, -foot_z, 12), (foot_x, -foot_z, 12), (foot_x, -SIDE)], False, 6)
@@ -721,7 +735,7 @@ def housing_base():
             solid.grid(rows)
         tops, bottoms = [path(shifted(foot, 2.0))], [path(foot)]
         for x in (-145.0, 0.0, 145.0):
-            loop = solid.hole((x, z * 67.0), 6.5, 20, ground(FLOOR), ground(FOOT))
+            loop = solid.hole((x, z * 67.0), 6.5, 16, ground(FLOOR), ground(FOOT))
             tops.append(loop)
             bottoms.append(loop)
         wall = [[(ENDS[0] + ROUND, -FLANGE), (ENDS[0] + ROUND, FLOOR), (ENDS[1] - ROUND, FLOOR), (ENDS[1] - ROUND, -FLANGE)]]
@@ -735,10 +749,10 @@ def housing_base():
             tops.append([(x + p, z * q) for p, q in path(RIB)])
             start = boss_angles(r)[1][0]
             first = math.acos(RIB_HALF / r)
-            arcs = [(r * math.cos(a), -r * math.sin(a)) for a in steps(start, first, 9)]
+            arcs = [(r * math.cos(a), -r * math.sin(a)) for a in steps(start, first, 8)]
             arcs = [*arcs, (RIB_HALF, FOOT), (-RIB_HALF, FOOT), *[(-p, q) for p, q in reversed(arcs)]]
             wall.append([(x + p, q) for p, q in arcs])
-            inside.append([(x + bore * math.cos(a), -bore * math.sin(a)) for a in steps(0.0, math.pi, 24)])
+            inside.append([(x + bore * math.cos(a), -bore * math.sin(a)) for a in steps(0.0, math.pi, 20)])
         solid.flat(wall, upright(z * SIDE), (0.0, 0.0, float(z)))
         solid.flat(inside, upright(z * (SIDE - WALL)), (0.0, 0.0, -float(z)))
         solid.flat(tops, ground(FOOT), (0.0, 1.0, 0.0))
@@ -782,24 +796,23 @@ def hex_bolt(across, head, radius, length, columns=4, above=()):
     count = 6 * columns
     solid.flat([bottom, circle(0, 0, radius, count)], level(0.0), (0.0, 0.0, -1.0))
     solid.revolve(outline([(0, -length), (radius, -length, -0.8), (radius, 0)], False), count)
-    solid.revolve(outline([(top[0][0], head), *above, (0, above[-1][1] if above else head)], False, 4), count)
+    solid.revolve(outline([(top[0][0], head), *above, (0, above[-1][1] if above else head)], False, 3), count)
     return solid
 
 
-def nut(across, height, radius):
+def nut(across, height, radius, columns=2):
     solid = Solid()
-    bottom, _ = hexagon(solid, across, 0.0, height, (True, True), 4)
-    r = bottom[0][0]
-    solid.revolve(outline([(r, height), (radius, height, -0.4), (radius, 0, -0.4), (r, 0)], False), 24)
+    bottom, _ = hexagon(solid, across, 0.0, height, (True, True), columns)
+    solid.revolve(outline([(bottom[0][0], height), (radius, height, -0.4), (radius, 0), (bottom[0][0], 0)], False), 6 * columns)
     return solid
 
 
 def socket_screw(radius, length, head_radius, head, across):
     """Head upward from z = 0, with a socket half as deep as the head is high."""
     solid = Solid()
-    count, bottom = 18, head / 2
+    count, bottom = 14, head / 2
     top = head_radius - 0.6
-    solid.revolve(outline([(0, -length), (radius, -length, -0.6), (radius, 0), (head_radius, 0), (head_radius, head, -0.6), (top, head)], False), count)
+    solid.revolve(outline([(0, -length), (radius, -length), (radius, 0), (head_radius, 0), (head_radius, head, -0.6), (top, head)], False), count)
     corners = circle(0, 0, across / math.sqrt(3), 6)
     solid.flat([circle(0, 0, top, count), corners], level(head), (0.0, 0.0, 1.0))
     solid.wall([line(q, p) for p, q in zip(corners, corners[1:] + corners[:1])], level(bottom), level(head))
@@ -808,28 +821,25 @@ def socket_screw(radius, length, head_radius, head, across):
 
 
 def ring(inside, outside, width, count, chamfer=0.4):
-    """From z = 0 upward."""
-    return revolved([(inside, 0), (outside, 0, -chamfer), (outside, width, -chamfer), (inside, width)], count)
+    """From z = 0 upward, where its outer edge is cut off."""
+    return revolved([(inside, 0), (outside, 0), (outside, width, -chamfer), (inside, width)], count)
 
 
-def ball(radius):
-    """An icosahedron, each face in nine, blown up."""
+def ball(radius, parts=4):
+    """An octahedron, each face in parts * parts, blown up."""
     solid = Solid()
-    golden = (1 + math.sqrt(5)) / 2
-    corners = [p for s in (-1, 1) for t in (-golden, golden) for p in ((0, s, t), (s, t, 0), (t, 0, s))]
-    near = lambda a, b: abs(math.dist(a, b) - 2) < 1e-6
-    for i, a in enumerate(corners):
-        for j, b in enumerate(corners[:i]):
-            for c in corners[:j]:
-                if near(a, b) and near(b, c) and near(c, a):
-                    at = lambda u, v: unit(add(scale(a, 3 - u - v), add(scale(b, u), scale(c, v))))
-                    for u in range(3):
-                        for v in range(3 - u):
-                            cells = [((u, v), (u + 1, v), (u, v + 1))]
-                            if u + v < 2:
-                                cells.append(((u + 1, v), (u + 1, v + 1), (u, v + 1)))
-                            for cell in cells:
-                                solid.triangle(*[(scale(at(*p), radius), at(*p)) for p in cell])
+    for sx in (-1, 1):
+        for sy in (-1, 1):
+            for sz in (-1, 1):
+                # Angles rather than lengths in equal parts, so that the facets are alike.
+                at = lambda u, v: unit(tuple(s * math.tan(TAU / 8 * t / parts) for s, t in ((sx, parts - u - v), (sy, u), (sz, v))))
+                for u in range(parts):
+                    for v in range(parts - u):
+                        cells = [((u, v), (u + 1, v), (u, v + 1))]
+                        if u + v < parts - 1:
+                            cells.append(((u + 1, v), (u + 1, v + 1), (u, v + 1)))
+                        for cell in cells:
+                            solid.triangle(*[(scale(at(*p), radius), at(*p)) for p in cell])
     return solid
 
 
@@ -849,14 +859,14 @@ class Bearing:
         deep = self.groove * math.sin(opening)
         solid = Solid()
         if outer:
-            r = self.outside - FIT / 2
-            corners = [(land, -deep), (land, -half), (r, -half, 1.0), (r, half, 1.0), (land, half), (land, deep)]
-            groove = arc(self.pitch, 0, self.groove, opening, -opening, 6, -1)
+            r = self.outside - SEAT
+            corners = [(land, -deep), (land, -half), (r, -half, -0.9), (r, half, -0.9), (land, half), (land, deep)]
+            groove = arc(self.pitch, 0, self.groove, opening, -opening, 4, -1)
         else:
             r = self.bore
-            corners = [(land, deep), (land, half), (r, half, 1.0), (r, -half, 1.0), (land, -half), (land, -deep)]
-            groove = arc(self.pitch, 0, self.groove, TAU - opening, opening, 6, -1)
-        solid.revolve([*outline(corners, False, 2), groove], 45)
+            corners = [(land, deep), (land, half), (r, half, -0.9), (r, -half, -0.9), (land, -half), (land, -deep)]
+            groove = arc(self.pitch, 0, self.groove, TAU - opening, opening, 4, -1)
+        solid.revolve([*outline(corners, False), groove], 30)
         return solid
 
     def cage(self):
@@ -866,7 +876,7 @@ class Bearing:
         pieces = []
         for k in range(self.balls):
             piece = []
-            for t in steps(-reach, reach, 8):
+            for t in steps(-reach, reach, 4):
                 piece.append((TAU * k / self.balls + math.asin(pocket * math.sin(t) / self.pitch), pocket * math.cos(t), -math.sin(t), -math.cos(t)))
             pieces.append(piece)
             a, b = piece[-1], TAU / self.balls + pieces[-1][0][0]
@@ -887,7 +897,7 @@ def shaft(corners, count=48, keyway=None):
     The slot has round ends and points to +y.
     """
     solid = Solid()
-    pieces = outline(corners, False, 3)
+    pieces = outline(corners, False, 2)
     if keyway is None:
         solid.revolve(pieces, count)
         return solid
@@ -944,8 +954,8 @@ def feather_key(width, height, length):
 def end_cap(i, thick, spigot, recess, pocket=None, bore=None):
     """Over a bearing: its flange from z = 0 upward, a spigot of the given depth into the bore; closed, or with a pocket for a seal."""
     solid = Solid()
-    rim, seat, count = BOSS[i] - 0.5, BORE[i] - FIT, 48
-    solid.revolve(outline([(rim, 0), (rim, thick, 1.2), (rim - 1.25, thick)], False, 3), count)
+    rim, seat, count = BOSS[i] - 0.5, BORE[i] - SEAT, 32 if i < 2 else 40
+    solid.revolve(outline([(rim, 0), (rim, thick, 1.2), (rim - 1.2, thick)], False, 2), count)
     under = [(recess, -3), (recess, -spigot), (seat, -spigot, -1), (seat, 0)]
     if pocket:
         inner = pocket + 0.6
@@ -953,18 +963,18 @@ def end_cap(i, thick, spigot, recess, pocket=None, bore=None):
     else:
         inner = recess + 1
         path_in = [(inner, thick), (inner - 2.5, thick - 1.5, 1.0), (0, thick - 1.5)]
-        solid.revolve(outline([(0, -3), *under], False, 3), count)
-    solid.revolve(outline(path_in, False, 3), count)
+        solid.revolve(outline([(0, -3), *under], False), count)
+    solid.revolve(outline(path_in, False, 2), count)
     on, radius, angles = CAP_SCREWS[i]
-    holes = [solid.hole((on * math.cos(a), on * math.sin(a)), radius + 0.3, 14, level(0.0), level(thick)) for a in angles]
-    solid.flat([circle(0, 0, rim - 1.25, count), circle(0, 0, inner, count), *holes], level(thick), (0.0, 0.0, 1.0))
+    holes = [solid.hole((on * math.cos(a), on * math.sin(a)), radius + 0.3, 10, level(0.0), level(thick)) for a in angles]
+    solid.flat([circle(0, 0, rim - 1.2, count), circle(0, 0, inner, count), *holes], level(thick), (0.0, 0.0, 1.0))
     solid.flat([circle(0, 0, rim, count), circle(0, 0, seat, count), *holes], level(0.0), (0.0, 0.0, -1.0))
     return solid
 
 
 def seal(inside, outside, width):
     lip = [(inside + 2.4, width - 1.6), (inside + 1.6, width), (inside + 0.04, width - 1.5), (inside + 1, width - 3.2)]
-    return revolved([(inside + 1, 0), (outside, 0, -0.6), (outside, width, -0.6), (outside - 3.2, width), (outside - 4.2, width - 1.6), *lip], 48)
+    return revolved([(inside + 1, 0), (outside, 0, -0.6), (outside, width, -0.6), (outside - 3.2, width), (outside - 4.2, width - 1.6), *lip], 30)
 
 
 def plate(half_x, half_z, corner, thick, holes, chamfer=0.0, opening=None):
@@ -1065,20 +1075,20 @@ class Gearbox:
         corners = [(0, -67), (2.5, -71), (seat, -71, -1), (seat, -54), (14 - FIT, -54, -0.4), (14 - FIT, -9), (18, -9, -0.6), (18, -5, -0.6)]
         corners += [(15.5, -5, 2), (15.5, 54, -0.6), (seat, 54), (seat, 92, -0.6), (11, 92, 1), (11, 142, -1.2), (2.5, 142), (0, 138)]
         group = self.root.add("Input stage", at=(x1, 0.0, 0.0))
-        group.add("Input shaft", self.mesh("input shaft", "Steel", shaft(corners, 48, (11, 92, 142, 98, 134, 6 + FIT, 11 - 3.5))))
+        group.add("Input shaft", self.mesh("input shaft", "Steel", shaft(corners, 32, (11, 92, 142, 98, 134, 6 + FIT, 11 - 3.5))))
         group.add("Key input", self.mesh("key 6 x 6 x 36", "Steel", feather_key(6, 6, 36 - FIT)), (0.0, 11 - 3.5 + FIT, 98 + FIT / 2))
-        group.add("Gear 1", self.mesh("gear, 21 teeth, module 2", "Hardened steel", gear(21, 2, 28, 14, helix, 1, 4, 2)), (0.0, 0.0, -23.0))
-        spacer = self.mesh("spacer 28 x 35 x 17", "Steel", ring(14, 17.5, 17, 42))
+        group.add("Gear 1", self.mesh("gear, 21 teeth, module 2", "Hardened steel", gear(21, 2, 28, 14, helix, 1, 3, 2)), (0.0, 0.0, -23.0))
+        spacer = self.mesh("spacer 28 x 35 x 17", "Steel", ring(14, 17.5, 17, 30))
         group.add("Spacer 1", spacer, (0.0, 0.0, -54.0))
 
         group = self.root.add("Intermediate stage", at=(x2, 0.0, 0.0))
         corners = [(0, -67), (2.5, -71), (seat, -71, -1), (seat, -54), (15 - FIT, -54, -0.4), (15 - FIT, -9), (20, -9, -0.8), (20, -1, -0.8)]
         corners += [(15 - FIT, -1), (15 - FIT, 54, -0.4), (seat, 54), (seat, 71, -1), (2.5, 71), (0, 67)]
-        group.add("Intermediate shaft", self.mesh("intermediate shaft", "Steel", shaft(corners, 42)))
-        wheel = gear(67, 2, 24, 15, helix, -1, 2, 1, (58, 25, 28, 9, 6, 41.5, 8))
+        group.add("Intermediate shaft", self.mesh("intermediate shaft", "Steel", shaft(corners, 32)))
+        wheel = gear(67, 2, 24, 15, helix, -1, 1, 1, (58, 25, 28, 9, 6, 41.5, 8))
         group.add("Gear 2", self.mesh("gear, 67 teeth, module 2", "Hardened steel", wheel), (0.0, 0.0, -23.0))
         group.add("Gear 3", self.mesh("gear, 21 teeth, module 2.5", "Hardened steel", gear(21, 2.5, 38, 15, rings=2)), (0.0, 0.0, 18.0))
-        spacer = self.mesh("spacer 30 x 36 x 17", "Steel", ring(15, 18, 17, 42))
+        spacer = self.mesh("spacer 30 x 36 x 17", "Steel", ring(15, 18, 17, 30))
         group.add("Spacer 2", spacer, (0.0, 0.0, -54.0))
         group.add("Spacer 3", spacer, (0.0, 0.0, 37.0))
 
@@ -1086,11 +1096,11 @@ class Gearbox:
         seat = 20 - FIT
         corners = [(0, -66), (3, -72), (seat, -72, -1), (seat, -52), (24, -52, -0.6), (24, -10, 2), (29, -10, -0.8), (29, -2, -0.8), (23 - FIT, -2)]
         corners += [(23 - FIT, 52, -0.5), (seat, 52), (seat, 94, -0.6), (19, 94, 0.6), (19, 166, -1.6), (3, 166), (0, 160)]
-        group.add("Output shaft", self.mesh("output shaft", "Steel", shaft(corners, 60, (19, 94, 166, 104, 156, 10 + FIT, 19 - 5))))
+        group.add("Output shaft", self.mesh("output shaft", "Steel", shaft(corners, 40, (19, 94, 166, 104, 156, 10 + FIT, 19 - 5))))
         group.add("Key output", self.mesh("key 10 x 8 x 52", "Steel", feather_key(10, 8, 52 - FIT)), (0.0, 19 - 5 + FIT, 104 + FIT / 2))
         wheel = gear(69, 2.5, 34, 23, web=(75, 36, 40, 12, 6, 55.5, 11.5))
         group.add("Gear 4", self.mesh("gear, 69 teeth, module 2.5", "Hardened steel", wheel), (0.0, 0.0, 18.0))
-        group.add("Spacer 4", self.mesh("spacer 46 x 52 x 14", "Steel", ring(23, 26, 14, 48)), (0.0, 0.0, 38.0))
+        group.add("Spacer 4", self.mesh("spacer 46 x 52 x 14", "Steel", ring(23, 26, 14, 36)), (0.0, 0.0, 38.0))
 
     def bearings(self):
         group = self.root.add("Bearings")
@@ -1100,7 +1110,7 @@ class Gearbox:
             outer = self.mesh(f"{kind} outer ring", "Hardened steel", bearing.race(True))
             inner = self.mesh(f"{kind} inner ring", "Hardened steel", bearing.race(False))
             cage = self.mesh(f"{kind} cage", "Brass", bearing.cage())
-            sphere = self.mesh(f"{kind} ball", "Hardened steel", ball(bearing.ball))
+            sphere = self.mesh(f"{kind} ball", "Hardened steel", ball(bearing.ball, 3 if bearing.ball < 5 else 4))
             for x in shafts:
                 for side in (1, -1):
                     number += 1
@@ -1116,15 +1126,15 @@ class Gearbox:
 
     def fasteners(self):
         bolts = self.root.add("Fasteners")
-        bolt = self.mesh("bolt M8 x 40", "Zinc-plated", hex_bolt(13, 5.3, 3.95, 40))
+        bolt = self.mesh("bolt M8 x 40", "Zinc-plated", hex_bolt(13, 5.3, 3.95, 40, 3))
         m8 = self.mesh("nut M8", "Zinc-plated", nut(13, 6.8, 4.02))
-        washer = self.mesh("washer 8.4 x 16", "Zinc-plated", ring(4.2, 8, 1.6, 24, 0.3))
+        washer = self.mesh("washer 8.4 x 16", "Zinc-plated", ring(4.2, 8, 1.6, 18, 0.0))
         for k, (x, z) in enumerate(BOLTS, 1):
             bolts.add(f"Bolt {k}", bolt, (x, FLANGE + 1.6, z), after(UP, quaternion(2, 37.0 * k)))
             bolts.add(f"Washer {2 * k - 1}", washer, (x, FLANGE, z), UP)
             bolts.add(f"Washer {2 * k}", washer, (x, -FLANGE, z), DOWN)
             bolts.add(f"Nut {k}", m8, (x, -FLANGE - 1.6, z), after(DOWN, quaternion(2, 23.0 * k)))
-        pin = self.mesh("dowel pin 8 x 28", "Steel", revolved([(0, -14), (DOWEL - FIT, -14, -1), (DOWEL - FIT, 14, -0.6), (0, 14)], 20, False))
+        pin = self.mesh("dowel pin 8 x 28", "Steel", revolved([(0, -14), (DOWEL - SEAT, -14, -1), (DOWEL - SEAT, 14, -0.6), (0, 14)], 16, False))
         for k, (x, z) in enumerate(DOWELS, 1):
             bolts.add(f"Dowel pin {k}", pin, (x, 0.5, z), UP)
         m5 = self.mesh("screw M5 x 16", "Zinc-plated", socket_screw(2.44, 16, 4.25, 5, 4))
@@ -1151,15 +1161,15 @@ class Gearbox:
         fittings.add("Gasket", self.mesh("gasket", "Rubber", plate(44, 36, 9, 1.0, screws, 0.0, opening)), at(0.0), self.tilt)
         fittings.add("Inspection lid", self.mesh("inspection lid", "Steel", plate(44, 36, 9, 5.0, [*screws, (0.0, 0.0, 6.0)], 0.8)), at(1.0), self.tilt)
         above = [(5.5, 6), (5.5, 9, 0.8), (11.5, 9, 1.0), (11.5, 17, 2.5), (8.5, 19.5, 2.0)]
-        breather = hex_bolt(17, 6, 5.9, 10, 4, above)
+        breather = hex_bolt(17, 6, 5.9, 10, 3, above)
         fittings.add("Breather", self.mesh("breather", "Brass", breather), at(6.0), after(self.tilt, UP))
         x = ENDS[1]
         corners = [(10.5, -9), (14.9, -9, -0.8), (14.9, 0), (20, 0), (20, 6, 1.5), (13.6, 6), (12.5, 4.9), (12.5, -2), (10.5, -2)]
-        fittings.add("Sight glass ring", self.mesh("sight glass ring", "Brass", revolved(corners, 40)), (x, *SIGHT[:2]), RIGHT)
+        fittings.add("Sight glass ring", self.mesh("sight glass ring", "Brass", revolved(corners, 30)), (x, *SIGHT[:2]), RIGHT)
         glass = [(0, -1.9), (12.5 - FIT, -1.9), (12.5 - FIT, 3.0, -0.4), (8, 3.4), (0, 3.6)]
-        fittings.add("Sight glass", self.mesh("sight glass", "Glass", revolved(glass, 40, False)), (x, *SIGHT[:2]), RIGHT)
+        fittings.add("Sight glass", self.mesh("sight glass", "Glass", revolved(glass, 30, False)), (x, *SIGHT[:2]), RIGHT)
         fittings.add("Drain washer", self.mesh("drain washer", "Brass", ring(8.05, 11.5, 1.5, 24)), (x, *DRAIN[:2]), RIGHT)
-        fittings.add("Drain plug", self.mesh("drain plug", "Zinc-plated", hex_bolt(17, 7, 7.94, 12)), (x + 1.5, *DRAIN[:2]), RIGHT)
+        fittings.add("Drain plug", self.mesh("drain plug", "Zinc-plated", hex_bolt(17, 7, 7.9, 12, 3)), (x + 1.5, *DRAIN[:2]), RIGHT)
 
 
 # --- the file ---------------------------------------------------------------
