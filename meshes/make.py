@@ -418,7 +418,7 @@ def tooth(teeth, module, helix, play=0.06):
     # The root is what the rounded tip of the rack's tooth sweeps: its normal goes through the pitch point.
     b = dedendum - tip
     c = (math.pi * transverse / 2 + play) / 2 - b * math.tan(pressure) - tip / math.cos(pressure)
-    for psi in steps(0, TAU / 4 - pressure, 2):
+    for psi in steps(0, TAU / 4 - pressure, 2 if teeth < 40 else 1):
         x = b * math.tan(psi)
         foot = (x + tip * math.sin(psi), r - b - tip * math.cos(psi))
         roll = (x - c) / r
@@ -521,6 +521,8 @@ SIDE = 55.0  # half the width, outside
 FLANGE_X, FLANGE_Z, FLANGE = 203.0, 76.0, 12.0  # half length, half width and thickness of each flange
 FACE = 79.0  # where the bosses end
 EDGE = 1.5  # rounding of flanges and bosses
+# The fillet between wall and boss: beyond the boss's radius, off the wall, and the normal's shares along radius and axis.
+FILLET = [(2.5 * (1 - math.sin(a)), 2.5 * (1 - math.cos(a)), math.sin(a), math.cos(a)) for a in steps(0, TAU / 4, 2)]
 FLOOR, FOOT = -109.0, -95.0  # bottom, and top of the feet
 ENDS = (SHAFT_X[0] - CROWN[0], SHAFT_X[2] + CROWN[2])
 BOLTS = [(x, z) for x in (-187.0, -86.0, 6.0, 138.0, 187.0) for z in (-65.5, 65.5)] + [(-191.0, 0.0), (191.0, 0.0)]
@@ -573,10 +575,19 @@ def flat_frame(inset):
     return lambda p: (middle[0] + along[0] * p[0], middle[1] + along[1] * p[0], p[1]), (*n, 0.0), math.dist(a[0], b[0]) / 2
 
 
-def boss_angles(radius):
-    """From 0 to pi, with the heights of the flange's edge among them."""
-    low = [0.0] + [math.asin((FLANGE - below) / radius) for _, below, _, _ in rounding(EDGE, 2)]
-    return low, steps(low[-1], math.pi - low[-1], 18)
+def boss_foot(radius):
+    """Angles from 0 up to the top of the flange, by the rows of its edge."""
+    return [0.0] + [math.asin((FLANGE - below) / radius) for _, below, _, _ in rounding(EDGE, 2)]
+
+
+def boss_arcs(radius, ribs):
+    """Angles around a boss from one side of the flange to the other; two arcs where a rib comes between."""
+    start = math.asin(FLANGE / radius)
+    if not ribs:
+        return [steps(start, math.pi - start, 18)]
+    first = math.acos(RIB_HALF / radius)
+    arc_ = steps(start, first, 8)
+    return [arc_, [math.pi - a for a in reversed(arc_)]]
 
 
 def flange_half(solid, up, ribs):
@@ -608,22 +619,25 @@ def flange_half(solid, up, ribs):
                 rows.append([((x(y), up * y, z * (FLANGE_Z - inset)), (0.0, up * rise, z * side)) for x in (left, right)])
             solid.grid(rows)
         for i, (x, r, bore) in enumerate(zip(SHAFT_X, BOSS, BORE)):
-            low, high = boss_angles(r)
+            low, arcs = boss_foot(r), boss_arcs(r, ribs)
             starts = [FLANGE_Z] + [FLANGE_Z - inset for inset, *_ in lip]
             # Around the boss: columns of (angle, where along z it begins).
             mantle = [list(zip(low, starts))]
+            off = FILLET[-1][1]
+            mantle += [[(a, SIDE + off) for a in part] for part in arcs]
             if ribs:
-                first, last = math.acos(RIB_HALF / r), math.acos(-RIB_HALF / r)
-                mantle.append([(a, SIDE) for a in steps(high[0], first, 8)])
-                mantle.append([(math.acos(p / r), q) for p, q in path(RIB[1:-1])])
-                mantle.append([(a, SIDE) for a in steps(last, high[-1], 8)])
-            else:
-                mantle.append([(a, SIDE) for a in high])
+                mantle.insert(2, [(math.acos(p / r), q) for p, q in path(RIB[1:-1])])
             mantle.append([(math.pi - a, s) for a, s in zip(low, starts)][::-1])
             for columns in mantle:
                 rows = []
                 for end in (None, FACE - EDGE):
                     rows.append([((x + r * math.cos(a), up * r * math.sin(a), z * (s if end is None else end)), (math.cos(a), up * math.sin(a), 0.0)) for a, s in columns])
+                solid.grid(rows)
+            for part in zip(*[boss_arcs(r + beyond, ribs) for beyond, *_ in FILLET]):
+                rows = []
+                for (beyond, off, m, n), angles in zip(FILLET, part):
+                    q = r + beyond
+                    rows.append([((x + q * math.cos(a), up * q * math.sin(a), z * (SIDE + off)), (m * math.cos(a), up * m * math.sin(a), z * n)) for a in angles])
                 solid.grid(rows)
             around = [0.0] + [a for columns in mantle for a, _ in columns[1:]]
             rows = []
@@ -644,8 +658,9 @@ def flange_half(solid, up, ribs):
             solid.flat(face, upright(z * FACE), (0.0, 0.0, float(z)))
             below_loops.append([(x - r, z * FLANGE_Z), *[(x - r + inset, z * (FACE - below)) for inset, below, *_ in lip], *[(x + r - inset, z * (FACE - below)) for inset, below, *_ in lip[::-1]], (x + r, z * FLANGE_Z)])
             below_loops.append([(x - bore, z * (SIDE - WALL)), (x - bore, z * FACE), (x + bore, z * FACE), (x + bore, z * (SIDE - WALL))])
-            half = math.sqrt(r * r - FLANGE**2)
-            top_loops.append([(x - half, z * SIDE), (x - half, z * (FLANGE_Z - EDGE)), (x + half, z * (FLANGE_Z - EDGE)), (x + half, z * SIDE)])
+            side = [(math.sqrt((r + beyond) ** 2 - FLANGE**2), z * (SIDE + off)) for beyond, off, *_ in FILLET]
+            side.append((side[-1][0], z * (FLANGE_Z - EDGE)))
+            top_loops.append([(x - p, q) for p, q in side] + [(x + p, q) for p, q in reversed(side)])
     for centres, radius in ((BOLTS, BOLT_HOLE), (DOWELS, DOWEL)):
         for c in centres:
             loop = solid.hole(c, radius, 12, ground(0.0), ground(top))
@@ -687,7 +702,8 @@ def housing_cover():
             loops = [profile]
             for x, r, bore in zip(SHAFT_X, BOSS, BORE):
                 if outside:
-                    loops.append([(x + r * math.cos(a), r * math.sin(a)) for a in boss_angles(r)[1]])
+                    q = r + FILLET[0][0]
+                    loops.append([(x + q * math.cos(a), q * math.sin(a)) for a in boss_arcs(q, False)[0]])
                 else:
                     loops.append([(x + bore * math.cos(a), bore * math.sin(a)) for a in steps(0.0, math.pi, 20)])
             solid.flat(loops, upright(z), (0.0, 0.0, math.copysign(1.0, z * facing)))
@@ -742,16 +758,19 @@ def housing_base():
         wall.append([(-foot_x, FLOOR), *[(i - foot_x, FOOT - b) for i, b, *_ in lip], *[(foot_x - i, FOOT - b) for i, b, *_ in reversed(lip)], (foot_x, FLOOR)])
         inside = [[(ENDS[0] + WALL + INNER_ROUND, 0.0), (ENDS[0] + WALL + INNER_ROUND, bed + curb), (ENDS[1] - WALL - INNER_ROUND, bed + curb), (ENDS[1] - WALL - INNER_ROUND, 0.0)]]
         for x, r, bore in zip(SHAFT_X, BOSS, BORE):
-            for piece in RIB:
-                low = [((x + p[0], FOOT, z * p[1]), (m[0], 0.0, z * m[1])) for p, m in piece]
-                high = [((x + p[0], -math.sqrt(r * r - p[0] ** 2), z * p[1]), (m[0], 0.0, z * m[1])) for p, m in piece]
-                solid.grid([low, high])
+            sides = [[((RIB_HALF, SIDE + off), (1.0, 0.0)) for _, off, *_ in FILLET] + [RIB[0][1]]]
+            sides.append([((-p, q), (-1.0, 0.0)) for (p, q), _ in reversed(sides[0])])
+            for piece in [sides[0], *RIB[1:-1], sides[1]]:
+                rows = [[], []]
+                for p, m in piece:
+                    beyond = next((b for b, off, *_ in FILLET if SIDE + off == p[1]), 0.0)
+                    for row, y in zip(rows, (FOOT, -math.sqrt((r + beyond) ** 2 - p[0] ** 2))):
+                        row.append(((x + p[0], y, z * p[1]), (m[0], 0.0, z * m[1])))
+                solid.grid(rows)
             tops.append([(x + p, z * q) for p, q in path(RIB)])
-            start = boss_angles(r)[1][0]
-            first = math.acos(RIB_HALF / r)
-            arcs = [(r * math.cos(a), -r * math.sin(a)) for a in steps(start, first, 8)]
-            arcs = [*arcs, (RIB_HALF, FOOT), (-RIB_HALF, FOOT), *[(-p, q) for p, q in reversed(arcs)]]
-            wall.append([(x + p, q) for p, q in arcs])
+            q = r + FILLET[0][0]
+            left, right = [[(x + q * math.cos(a), -q * math.sin(a)) for a in angles] for angles in boss_arcs(q, True)]
+            wall.append([*left, (x + RIB_HALF, FOOT), (x - RIB_HALF, FOOT), *right])
             inside.append([(x + bore * math.cos(a), -bore * math.sin(a)) for a in steps(0.0, math.pi, 20)])
         solid.flat(wall, upright(z * SIDE), (0.0, 0.0, float(z)))
         solid.flat(inside, upright(z * (SIDE - WALL)), (0.0, 0.0, -float(z)))
@@ -843,6 +862,19 @@ def ball(radius, parts=4):
     return solid
 
 
+def guard(radius, half, thick, deep, start, stop, count=16):
+    """A gutter of sheet metal around the lower part of a wheel, its sides turned inward; angles from +x."""
+    solid = Solid()
+    r, w = radius + thick, half + thick
+    section = outline([(r, -w), (r, w), (radius - deep, w), (radius - deep, half), (radius, half), (radius, -half), (radius - deep, -half), (radius - deep, -w)])
+    turns = [(math.cos(a), math.sin(a)) for a in steps(start, stop, count)]
+    for piece in section:
+        solid.grid([[((q * c, q * s, z), (m * c, m * s, n)) for c, s in turns] for (q, z), (m, n) in piece])
+    for (c, s), facing in ((turns[0], 1), (turns[-1], -1)):
+        solid.flat([points(section)], lambda p: (p[0] * c, p[0] * s, p[1]), (facing * s, -facing * c, 0.0))
+    return solid
+
+
 class Bearing:
     """A deep groove ball bearing about z; its cage is open downward."""
 
@@ -866,7 +898,7 @@ class Bearing:
             r = self.bore
             corners = [(land, deep), (land, half), (r, half, -0.9), (r, -half, -0.9), (land, -half), (land, -deep)]
             groove = arc(self.pitch, 0, self.groove, TAU - opening, opening, 4, -1)
-        solid.revolve([*outline(corners, False), groove], 30)
+        solid.revolve([*outline(corners, False), groove], 27)
         return solid
 
     def cage(self):
@@ -1043,9 +1075,10 @@ class Gearbox:
 
     def __init__(self):
         self.meshes = {}
-        self.root = Node("Reducer", turn=after(quaternion(0, 27), quaternion(1, -33)))
+        self.root = Node("Reducer", turn=after(quaternion(0, 28), quaternion(1, -37)))
         self.casing()
         self.gears()
+        self.guards()
         self.bearings()
         self.fasteners()
         self.fittings()
@@ -1101,6 +1134,18 @@ class Gearbox:
         wheel = gear(69, 2.5, 34, 23, web=(75, 36, 40, 12, 6, 55.5, 11.5))
         group.add("Gear 4", self.mesh("gear, 69 teeth, module 2.5", "Hardened steel", wheel), (0.0, 0.0, 18.0))
         group.add("Spacer 4", self.mesh("spacer 46 x 52 x 14", "Steel", ring(23, 26, 14, 36)), (0.0, 0.0, 38.0))
+
+    def guards(self):
+        group = self.root.add("Lubrication")
+        bed = FLOOR + 10
+        wheels = ((SHAFT_X[1], -23.0, 73.0, 13.5, 206, 338), (SHAFT_X[2], 18.0, 91.5, 18.5, 202, 350))
+        for number, (x, z, radius, half, start, stop) in enumerate(wheels, 1):
+            sheet = guard(radius, half, 1.5, 16, math.radians(start), math.radians(stop))
+            group.add(f"Splash guard {number}", self.mesh(f"splash guard {number}", "Zinc-plated", sheet), (x, 0.0, z))
+            height = -radius - 1.5 - bed
+            peg = self.mesh(f"peg {number}", "Steel", revolved([(0, 0), (5, 0), (5, height), (0, height)], 14, False))
+            for k in (-1, 1):
+                group.add(f"Guard peg {2 * number + (k - 1) // 2}", peg, (x, bed, z + 8 * k), UP)
 
     def bearings(self):
         group = self.root.add("Bearings")
