@@ -531,6 +531,8 @@ BOLT_HOLE, DOWEL = 4.5, 4.0
 CAP_SCREWS = [(31.5, 2.5, [TAU * (k + 0.5) / 4 for k in range(4)])] * 2 + [(46.5, 3.0, [TAU * (k + 0.5) / 6 for k in range(6)])]
 SIGHT = (-46.0, 20.0, 15.0)  # y, z and radius of the hole in the wall at the output end
 DRAIN = (-80.0, -20.0, 8.0)
+# Where the cooling coil comes out at the other end: y, z, radius of the hole.
+COIL = [(-84.0, -30.0, 7.0), (-84.0, 30.0, 7.0)]
 # The opening on the flat of the cover between the arcs about the last two shafts: half lengths along x and z, corner.
 OPENING = (30.0, 24.0, 6.0)
 LID_SCREWS = [(x, z) for x in (-36.0, 36.0) for z in (-28.0, 28.0)]
@@ -729,16 +731,14 @@ def housing_base():
         rows = [[((p[0] - i * n[0], bed + b, p[1] - i * n[1]), (-s * n[0], t, -s * n[1])) for p, n in piece] for i, b, s, t in rounding(curb, 3)]
         solid.grid(rows)
     solid.flat([points(shifted(inner, curb))], ground(bed), (0.0, 1.0, 0.0))
-    # The walls at the ends, with the holes for sight glass and drain plug at one of them.
-    for x, facing in ((ENDS[0], -1), (ENDS[1], 1)):
+    # The walls at the ends, with the holes for cooling coil, sight glass and drain plug.
+    for x, facing, holes in ((ENDS[0], -1, COIL), (ENDS[1], 1, [SIGHT, DRAIN])):
         for at, reach, low, high, n in ((x, SIDE - ROUND, FLOOR, -FLANGE, facing), (x - facing * WALL, SIDE - WALL - INNER_ROUND, bed + curb, 0.0, -facing)):
             loops = [[(low, -reach), (high, -reach), (high, reach), (low, reach)]]
-            if facing > 0:
-                loops += [circle(y, z, r, 24) for y, z, r in (SIGHT, DRAIN)]
+            loops += [circle(y, z, r, 20) for y, z, r in holes]
             solid.flat(loops, lambda p, at=at: (at, *p), (float(n), 0.0, 0.0))
-        if facing > 0:
-            for y, z, r in (SIGHT, DRAIN):
-                solid.hole((y, z), r, 24, lambda p: (x - WALL, *p), lambda p: (x, *p))
+        for y, z, r in holes:
+            solid.hole((y, z), r, 20, lambda p: (x - facing * WALL, *p), lambda p: (x, *p))
     # The long walls, with feet, bosses and ribs.
     foot_x, foot_z, lip = 165.0, 78.0, rounding(2.0, 2)
     bottom = [points(plan)]
@@ -829,7 +829,7 @@ def nut(across, height, radius, columns=2):
 def socket_screw(radius, length, head_radius, head, across):
     """Head upward from z = 0, with a socket half as deep as the head is high."""
     solid = Solid()
-    count, bottom = 14, head / 2
+    count, bottom = 12, head / 2
     top = head_radius - 0.6
     solid.revolve(outline([(0, -length), (radius, -length), (radius, 0), (head_radius, 0), (head_radius, head, -0.6), (top, head)], False), count)
     corners = circle(0, 0, across / math.sqrt(3), 6)
@@ -862,7 +862,7 @@ def ball(radius, parts=4):
     return solid
 
 
-def guard(radius, half, thick, deep, start, stop, count=16):
+def guard(radius, half, thick, deep, start, stop, count=14):
     """A gutter of sheet metal around the lower part of a wheel, its sides turned inward; angles from +x."""
     solid = Solid()
     r, w = radius + thick, half + thick
@@ -872,6 +872,38 @@ def guard(radius, half, thick, deep, start, stop, count=16):
         solid.grid([[((q * c, q * s, z), (m * c, m * s, n)) for c, s in turns] for (q, z), (m, n) in piece])
     for (c, s), facing in ((turns[0], 1), (turns[-1], -1)):
         solid.flat([points(section)], lambda p: (p[0] * c, p[0] * s, p[1]), (facing * s, -facing * c, 0.0))
+    return solid
+
+
+def coil(outside, inside, count=8):
+    """A tube in the plane y = 0, there and back twice, with open ends at the left."""
+    solid = Solid()
+    left, right, bend, out = -150.0, -6.0, 10.0, ENDS[0] - 16
+    way = [((out, -30.0), (1, 0))]  # points and directions
+    for z, x, facing in ((-20.0, right, 1), (0.0, left, -1), (20.0, right, 1)):
+        for a in steps(-TAU / 4, TAU / 4, 5):
+            c, s = facing * math.cos(a), math.sin(a)
+            way.append(((x + bend * c, z + bend * s), (-facing * s, abs(c))))
+    way.append(((out, 30.0), (-1, 0)))
+    around = circle(0, 0, 1, count) + [(1.0, 0.0)]
+    for radius, facing in ((outside, 1), (inside, -1)):
+        rows = []
+        for (x, z), (u, w) in way:
+            rows.append([((x - radius * c * w, radius * s, z + radius * c * u), (-facing * c * w, facing * s, facing * c * u)) for c, s in around])
+        solid.grid(rows)
+    for z in (-30.0, 30.0):
+        side = 1 if z < 0 else -1
+        loops = [[(z + side * r * c, r * s) for c, s in around[:-1]] for r in (outside, inside)]
+        solid.flat(loops, lambda p: (out, p[1], p[0]), (-1.0, 0.0, 0.0))
+    return solid
+
+
+def union(across, height, stub, bore, depth):
+    """A hexagon from z = 0 upward and a stub downward, drilled through."""
+    solid = Solid()
+    bottom, top = hexagon(solid, across, 0.0, height, (False, True), 3)
+    solid.flat([bottom, circle(0, 0, stub, 18)], level(0.0), (0.0, 0.0, -1.0))
+    solid.revolve(outline([(top[0][0], height), (bore, height, -0.5), (bore, -depth), (stub, -depth, -0.8), (stub, 0)], False), 18)
     return solid
 
 
@@ -986,7 +1018,7 @@ def feather_key(width, height, length):
 def end_cap(i, thick, spigot, recess, pocket=None, bore=None):
     """Over a bearing: its flange from z = 0 upward, a spigot of the given depth into the bore; closed, or with a pocket for a seal."""
     solid = Solid()
-    rim, seat, count = BOSS[i] - 0.5, BORE[i] - SEAT, 32 if i < 2 else 40
+    rim, seat, count = BOSS[i] - 0.5, BORE[i] - SEAT, 30 if i < 2 else 40
     solid.revolve(outline([(rim, 0), (rim, thick, 1.2), (rim - 1.2, thick)], False, 2), count)
     under = [(recess, -3), (recess, -spigot), (seat, -spigot, -1), (seat, 0)]
     if pocket:
@@ -1058,6 +1090,7 @@ UP = quaternion(0, -90)  # turns z to y
 DOWN = quaternion(0, 90)
 BACK = quaternion(1, 180)  # turns z to -z
 RIGHT = quaternion(1, 90)  # turns z to x
+LEFT = quaternion(1, -90)  # turns z to -x
 
 
 class Node:
@@ -1142,10 +1175,15 @@ class Gearbox:
         for number, (x, z, radius, half, start, stop) in enumerate(wheels, 1):
             sheet = guard(radius, half, 1.5, 16, math.radians(start), math.radians(stop))
             group.add(f"Splash guard {number}", self.mesh(f"splash guard {number}", "Zinc-plated", sheet), (x, 0.0, z))
-            height = -radius - 1.5 - bed
-            peg = self.mesh(f"peg {number}", "Steel", revolved([(0, 0), (5, 0), (5, height), (0, height)], 14, False))
+            # Two pegs carry it, which touch it with their inner edges.
+            height = -math.sqrt((radius + 1.5) ** 2 - 6**2) - bed
+            peg = self.mesh(f"peg {number}", "Steel", revolved([(0, 0), (4, 0), (4, height), (0, height)], 14, False))
             for k in (-1, 1):
-                group.add(f"Guard peg {2 * number + (k - 1) // 2}", peg, (x, bed, z + 8 * k), UP)
+                group.add(f"Guard peg {2 * number + (k - 1) // 2}", peg, (x + 10 * k, bed, -20.0 if number == 1 else z), UP)
+        group.add("Cooling coil", self.mesh("cooling coil", "Brass", coil(5.0, 4.0)), (0.0, COIL[0][0], 0.0))
+        socket = self.mesh("union", "Zinc-plated", union(19, 9, 7 - FIT, 5 + FIT, 9))
+        for number, (y, z, _) in enumerate(COIL, 1):
+            group.add(f"Coil union {number}", socket, (ENDS[0], y, z), LEFT)
 
     def bearings(self):
         group = self.root.add("Bearings")
@@ -1193,9 +1231,8 @@ class Gearbox:
                     bolts.add(f"Screw {number}", mesh, (x + on * math.cos(a), on * math.sin(a), side * (FACE + thick)), spin if side > 0 else after(BACK, spin))
         place, n, _ = flat_frame(0.0)
         self.tilt = quaternion(2, math.degrees(math.atan2(n[1], n[0])) - 90)
-        for x, z in LID_SCREWS:
-            number += 1
-            bolts.add(f"Screw {number}", m5, add(place((x, z)), scale(n, 6.0)), after(self.tilt, after(UP, quaternion(2, 41.0 * number))))
+        for number, (x, z) in enumerate(LID_SCREWS, 1):
+            bolts.add(f"Lid screw {number}", m5, add(place((x, z)), scale(n, 6.0)), after(self.tilt, after(UP, quaternion(2, 41.0 * number))))
 
     def fittings(self):
         fittings = self.root.add("Fittings")
