@@ -66,7 +66,10 @@ def steps(a, b, count):
 
 
 def arc(x, y, radius, start, end, count, outward=1):
-    return [((x + radius * math.cos(a), y + radius * math.sin(a)), (outward * math.cos(a), outward * math.sin(a))) for a in steps(start, end, count)]
+    return [
+        ((x + radius * math.cos(a), y + radius * math.sin(a)), (outward * math.cos(a), outward * math.sin(a)))
+        for a in steps(start, end, count)
+    ]
 
 
 def line(p, q):
@@ -324,70 +327,53 @@ class Solid:
         for piece in pieces:
             self.grid([[((r * c, r * s, z), (m * c, m * s, n)) for c, s in turns] for (r, z), (m, n) in piece])
 
-    def turned(self, turn):
-        """Moved by a function of points that turns, without mirroring, or only shifts."""
-        origin = turn((0.0, 0.0, 0.0))
-        result = Solid()
-        result.triangles = [tuple((turn(p), sub(turn(n), origin)) for p, n in t) for t in self.triangles]
-        return result
+    def split(self, edges, name):
+        """Splits the triangles beside edges without a neighbour at a corner that lies on the edge."""
+        loose = {e for e in edges if edges[e] != edges[e[1], e[0]]}
+        ends = {k for e in loose for k in e}
+        corners = {}
+        for t in self.triangles:
+            for p, _ in t:
+                if key(p) in ends:
+                    corners.setdefault(key(p), p)
+        result = []
+        for t in self.triangles:
+            for i in range(3):
+                (a, m), (b, n), c = t[i], t[(i + 1) % 3], t[(i + 2) % 3]
+                e = (key(a), key(b))
+                if e not in loose:
+                    continue
+                way, length = sub(b, a), math.dist(a, b)
+                shares = [(dot(sub(p, a), way) / length**2, p) for k, p in corners.items() if k not in e]
+                on = [(s, p) for s, p in shares if 0 < s < 1 and math.dist(p, add(a, scale(way, s))) < 1e-4]
+                if on:
+                    share, p = min(on, key=lambda o: abs(o[0] - 0.5))
+                    middle = (p, unit(add(scale(m, 1 - share), scale(n, share))))
+                    result += [((a, m), middle, c), (middle, (b, n), c)]
+                    break
+            else:
+                result.append(t)
+        if len(result) == len(self.triangles):
+            raise SystemExit(f"{name}: {len(loose)} edges without a neighbour, near {sorted(corners.values())[:4]}")
+        self.triangles = result
 
     def sewn(self, name):
-        """Splits edges at corners that lie on them, then checks what a solid must be; answers itself."""
-        triangles = self.triangles
-        for _ in range(20):
-            edges = Counter((key(t[i][0]), key(t[(i + 1) % 3][0])) for t in triangles for i in range(3))
-            loose = {e for e in edges if edges[e] != edges[e[1], e[0]]}
-            if not loose:
+        """Closed by splitting edges, then checked for what a solid must be; answers itself."""
+        while True:
+            edges = Counter((key(t[i][0]), key(t[(i + 1) % 3][0])) for t in self.triangles for i in range(3))
+            if all(edges[e] == edges.get((e[1], e[0])) for e in edges):
                 break
-            corners = {}
-            ends = {k for e in loose for k in e}
-            for t in triangles:
-                for p, _ in t:
-                    k = key(p)
-                    if k in ends:
-                        corners.setdefault(k, p)
-            result, split = [], False
-            for t in triangles:
-                where = None
-                for i in range(3):
-                    (a, m), (b, n) = t[i], t[(i + 1) % 3]
-                    e = (key(a), key(b))
-                    if e not in loose:
-                        continue
-                    d, length = sub(b, a), math.dist(a, b)
-                    best = None
-                    for k, p in corners.items():
-                        if k in e:
-                            continue
-                        share = dot(sub(p, a), d) / length**2
-                        if 0 < share < 1 and math.dist(p, add(a, scale(d, share))) < 1e-4:
-                            if best is None or abs(share - 0.5) < abs(best[0] - 0.5):
-                                best = (share, p)
-                    if best:
-                        where = (i, *best)
-                        break
-                if where is None:
-                    result.append(t)
-                    continue
-                i, share, p = where
-                (a, m), (b, n), c = t[i], t[(i + 1) % 3], t[(i + 2) % 3]
-                middle = (p, unit(add(scale(m, 1 - share), scale(n, share))))
-                result += [((a, m), middle, c), (middle, (b, n), c)]
-                split = True
-            triangles = result
-            if not split:
-                raise SystemExit(f"{name}: {len(loose)} loose edges, near {sorted(corners.values())[:4]}")
-        self.triangles = triangles
-        volume = 0.0
-        for (a, _), (b, _), (c, _) in triangles:
-            volume += dot(a, cross(b, c)) / 6
-            if dot(*[cross(sub(b, a), sub(c, a))] * 2) < 1e-10:
-                raise SystemExit(f"{name}: a degenerate triangle at {a}")
-        if any(edges[e] != 1 for e in edges):
+            self.split(edges, name)
+        if any(times != 1 for times in edges.values()):
             raise SystemExit(f"{name}: an edge with more than two faces, near {next(e for e in edges if edges[e] != 1)}")
+        volume = 0.0
+        for (a, _), (b, _), (c, _) in self.triangles:
+            volume += dot(a, cross(b, c)) / 6
+            double = cross(sub(b, a), sub(c, a))
+            if dot(double, double) < 1e-8:
+                raise SystemExit(f"{name}: a degenerate triangle at {a}")
         if volume <= 0:
             raise SystemExit(f"{name}: inside out")
-        self.volume = volume
         return self
 
 
@@ -500,7 +486,10 @@ def gear(teeth, module, width, bore, helix=0.0, hand=1, slices=1, rings=1, web=N
     t, h = thick / 2, hub_width / 2
     far, near, hub_count = rim - 5, hub + 5, 40
     turn([(rim, top), (rim - 1.5, t, 3), (far, t)], count)
-    turn([(near, t), (hub + 1.5, t, 3), (hub, h, -1), (bore, h, -1), (bore, -h, -1), (hub, -h, -1), (hub + 1.5, -t, 3), (near, -t)], hub_count)
+    turn(
+        [(near, t), (hub + 1.5, t, 3), (hub, h, -1), (bore, h, -1), (bore, -h, -1), (hub, -h, -1), (hub + 1.5, -t, 3), (near, -t)],
+        hub_count,
+    )
     turn([(far, -t), (rim - 1.5, -t, 3), (rim, -top)], count)
     windows = [solid.hole(c, radius, 16, level(-t), level(t)) for c in circle(0, 0, on, holes)]
     for z in (-t, t):
@@ -528,7 +517,7 @@ ENDS = (SHAFT_X[0] - CROWN[0], SHAFT_X[2] + CROWN[2])
 BOLTS = [(x, z) for x in (-187.0, -86.0, 6.0, 138.0, 187.0) for z in (-65.5, 65.5)] + [(-191.0, 0.0), (191.0, 0.0)]
 DOWELS = [(-191.0, -30.0), (191.0, 30.0)]
 BOLT_HOLE, DOWEL = 4.5, 4.0
-CAP_SCREWS = [(31.5, 2.5, [TAU * (k + 0.5) / 4 for k in range(4)])] * 2 + [(46.5, 3.0, [TAU * (k + 0.5) / 6 for k in range(6)])]
+CAP_SCREWS = [(31.5, 2.7, [TAU * (k + 0.5) / 4 for k in range(4)])] * 2 + [(46.5, 3.3, [TAU * (k + 0.5) / 6 for k in range(6)])]
 SIGHT = (-46.0, 20.0, 15.0)  # y, z and radius of the hole in the wall at the output end
 DRAIN = (-80.0, -20.0, 8.0)
 # Where the cooling coil comes out at the other end: y, z, radius of the hole.
@@ -544,11 +533,6 @@ RIB = outline([(RIB_HALF, SIDE), (RIB_HALF, 72.0, 4.0), (-RIB_HALF, 72.0, 4.0), 
 def ground(y):
     """Puts a point (x, z) at a height."""
     return lambda p: (p[0], y, p[1])
-
-
-def upright(z):
-    """Puts a point (x, y) at z."""
-    return lambda p: (p[0], p[1], z)
 
 
 def box(x0, x1, y0, y1, corner=0.0, count=4):
@@ -593,8 +577,7 @@ def boss_arcs(radius, ribs):
 
 
 def flange_half(solid, up, ribs):
-    """What cover and base have alike: flange, bosses, bores and holes, upward (1) or downward (-1) from y = 0.
-    """
+    """What cover and base have alike: flange, bosses, bores and holes, upward (1) or downward (-1) from y = 0."""
     top = up * FLANGE
     lip = rounding(EDGE, 2)
     # The ends of the flange and its round corners; the long sides are between the bosses.
@@ -604,7 +587,9 @@ def flange_half(solid, up, ribs):
             continue
         rows = [[((p[0], 0.0, p[1]), (n[0], 0.0, n[1])) for p, n in piece]]
         for inset, below, side, rise in lip:
-            rows.append([((p[0] - inset * n[0], top - up * below, p[1] - inset * n[1]), (side * n[0], up * rise, side * n[1])) for p, n in piece])
+            rows.append(
+                [((p[0] - inset * n[0], top - up * below, p[1] - inset * n[1]), (side * n[0], up * rise, side * n[1])) for p, n in piece]
+            )
         solid.grid(rows)
     below_loops = [points(plan)]
     top_loops = [points(shifted(plan, EDGE))]
@@ -633,32 +618,65 @@ def flange_half(solid, up, ribs):
             for columns in mantle:
                 rows = []
                 for end in (None, FACE - EDGE):
-                    rows.append([((x + r * math.cos(a), up * r * math.sin(a), z * (s if end is None else end)), (math.cos(a), up * math.sin(a), 0.0)) for a, s in columns])
+                    rows.append(
+                        [
+                            (
+                                (x + r * math.cos(a), up * r * math.sin(a), z * (s if end is None else end)),
+                                (math.cos(a), up * math.sin(a), 0.0),
+                            )
+                            for a, s in columns
+                        ]
+                    )
                 solid.grid(rows)
             for part in zip(*[boss_arcs(r + beyond, ribs) for beyond, *_ in FILLET]):
                 rows = []
                 for (beyond, off, m, n), angles in zip(FILLET, part):
                     q = r + beyond
-                    rows.append([((x + q * math.cos(a), up * q * math.sin(a), z * (SIDE + off)), (m * math.cos(a), up * m * math.sin(a), z * n)) for a in angles])
+                    rows.append(
+                        [
+                            ((x + q * math.cos(a), up * q * math.sin(a), z * (SIDE + off)), (m * math.cos(a), up * m * math.sin(a), z * n))
+                            for a in angles
+                        ]
+                    )
                 solid.grid(rows)
             around = [0.0] + [a for columns in mantle for a, _ in columns[1:]]
             rows = []
             for inset, below, side, rise in lip:
                 q = r - inset
-                rows.append([((x + q * math.cos(a), up * q * math.sin(a), z * (FACE - below)), (side * math.cos(a), up * side * math.sin(a), z * rise)) for a in around])
+                rows.append(
+                    [
+                        (
+                            (x + q * math.cos(a), up * q * math.sin(a), z * (FACE - below)),
+                            (side * math.cos(a), up * side * math.sin(a), z * rise),
+                        )
+                        for a in around
+                    ]
+                )
             solid.grid(rows)
             inside = steps(0.0, math.pi, 20)
-            solid.grid([[((x + bore * math.cos(a), up * bore * math.sin(a), z * q), (-math.cos(a), -up * math.sin(a), 0.0)) for a in inside] for q in (SIDE - WALL, FACE)])
+            solid.grid(
+                [
+                    [((x + bore * math.cos(a), up * bore * math.sin(a), z * q), (-math.cos(a), -up * math.sin(a), 0.0)) for a in inside]
+                    for q in (SIDE - WALL, FACE)
+                ]
+            )
             face = [[(x + q * math.cos(a), up * q * math.sin(a)) for a in angles] for q, angles in ((r - EDGE, around), (bore, inside))]
             face = [face[0] + face[1][::-1]]
             on, radius, angles = CAP_SCREWS[i]
             for a in angles:
                 if math.sin(a) * up > 0:
                     c = (x + on * math.cos(a), on * math.sin(a))
-                    face.append(solid.hole(c, radius, 8, upright(z * (FACE - 14)), upright(z * FACE)))
-                    solid.flat([circle(*c, radius, 8)], upright(z * (FACE - 14)), (0.0, 0.0, float(z)))
-            solid.flat(face, upright(z * FACE), (0.0, 0.0, float(z)))
-            below_loops.append([(x - r, z * FLANGE_Z), *[(x - r + inset, z * (FACE - below)) for inset, below, *_ in lip], *[(x + r - inset, z * (FACE - below)) for inset, below, *_ in lip[::-1]], (x + r, z * FLANGE_Z)])
+                    face.append(solid.hole(c, radius, 8, level(z * (FACE - 14)), level(z * FACE)))
+                    solid.flat([circle(*c, radius, 8)], level(z * (FACE - 14)), (0.0, 0.0, float(z)))
+            solid.flat(face, level(z * FACE), (0.0, 0.0, float(z)))
+            below_loops.append(
+                [
+                    (x - r, z * FLANGE_Z),
+                    *[(x - r + inset, z * (FACE - below)) for inset, below, *_ in lip],
+                    *[(x + r - inset, z * (FACE - below)) for inset, below, *_ in lip[::-1]],
+                    (x + r, z * FLANGE_Z),
+                ]
+            )
             below_loops.append([(x - bore, z * (SIDE - WALL)), (x - bore, z * FACE), (x + bore, z * FACE), (x + bore, z * (SIDE - WALL))])
             side = [(math.sqrt((r + beyond) ** 2 - FLANGE**2), z * (SIDE + off)) for beyond, off, *_ in FILLET]
             side.append((side[-1][0], z * (FLANGE_Z - EDGE)))
@@ -677,14 +695,19 @@ def flange_half(solid, up, ribs):
 def housing_cover():
     solid = Solid()
     top_loops = flange_half(solid, 1, False)
-    for outside, width, wall, radius, foot, facing in ((True, SIDE, 0.0, ROUND, FLANGE, 1), (False, SIDE - WALL, WALL, INNER_ROUND, 0.0, -1)):
+    for outside, width, wall, radius, foot, facing in (
+        (True, SIDE, 0.0, ROUND, FLANGE, 1),
+        (False, SIDE - WALL, WALL, INNER_ROUND, 0.0, -1),
+    ):
         rows = []
         for inset, below, side, rise in rounding(radius, 4):
             rows.append((width - below, wall + inset, side, rise))
         rows = [(-z, inset, side, -rise) for z, inset, side, rise in reversed(rows)] + rows
         lines = []
         for z, inset, side, rise in rows:
-            lines.append([[((*p, z), (facing * side * n[0], facing * side * n[1], facing * rise)) for p, n in piece] for piece in crown(inset, foot)])
+            lines.append(
+                [[((*p, z), (facing * side * n[0], facing * side * n[1], facing * rise)) for p, n in piece] for piece in crown(inset, foot)]
+            )
         for low, high in zip(lines, lines[1:]):
             for i, (a, b) in enumerate(zip(low, high)):
                 if i != 1 or b[0][0][2] - a[0][0][2] < 2 * (width - radius) - 1e-6:
@@ -708,7 +731,7 @@ def housing_cover():
                     loops.append([(x + q * math.cos(a), q * math.sin(a)) for a in boss_arcs(q, False)[0]])
                 else:
                     loops.append([(x + bore * math.cos(a), bore * math.sin(a)) for a in steps(0.0, math.pi, 20)])
-            solid.flat(loops, upright(z), (0.0, 0.0, math.copysign(1.0, z * facing)))
+            solid.flat(loops, level(z), (0.0, 0.0, math.copysign(1.0, z * facing)))
         if outside:
             ends = [(line[0][0][0], line[-1][-1][0]) for line in lines]
             top_loops.append([(a[0], a[2]) for a, _ in ends] + [(b[0], b[2]) for _, b in reversed(ends)])
@@ -728,12 +751,17 @@ def housing_base():
     curb, bed = 6.0, FLOOR + 10.0
     solid.wall([[(p, (-n[0], -n[1])) for p, n in piece] for piece in inner if len(piece) > 2], ground(bed + curb), ground(0.0))
     for piece in inner:
-        rows = [[((p[0] - i * n[0], bed + b, p[1] - i * n[1]), (-s * n[0], t, -s * n[1])) for p, n in piece] for i, b, s, t in rounding(curb, 3)]
+        rows = [
+            [((p[0] - i * n[0], bed + b, p[1] - i * n[1]), (-s * n[0], t, -s * n[1])) for p, n in piece] for i, b, s, t in rounding(curb, 3)
+        ]
         solid.grid(rows)
     solid.flat([points(shifted(inner, curb))], ground(bed), (0.0, 1.0, 0.0))
     # The walls at the ends, with the holes for cooling coil, sight glass and drain plug.
     for x, facing, holes in ((ENDS[0], -1, COIL), (ENDS[1], 1, [SIGHT, DRAIN])):
-        for at, reach, low, high, n in ((x, SIDE - ROUND, FLOOR, -FLANGE, facing), (x - facing * WALL, SIDE - WALL - INNER_ROUND, bed + curb, 0.0, -facing)):
+        for at, reach, low, high, n in (
+            (x, SIDE - ROUND, FLOOR, -FLANGE, facing),
+            (x - facing * WALL, SIDE - WALL - INNER_ROUND, bed + curb, 0.0, -facing),
+        ):
             loops = [[(low, -reach), (high, -reach), (high, reach), (low, reach)]]
             loops += [circle(y, z, r, 20) for y, z, r in holes]
             solid.flat(loops, lambda p, at=at: (at, *p), (float(n), 0.0, 0.0))
@@ -755,8 +783,22 @@ def housing_base():
             tops.append(loop)
             bottoms.append(loop)
         wall = [[(ENDS[0] + ROUND, -FLANGE), (ENDS[0] + ROUND, FLOOR), (ENDS[1] - ROUND, FLOOR), (ENDS[1] - ROUND, -FLANGE)]]
-        wall.append([(-foot_x, FLOOR), *[(i - foot_x, FOOT - b) for i, b, *_ in lip], *[(foot_x - i, FOOT - b) for i, b, *_ in reversed(lip)], (foot_x, FLOOR)])
-        inside = [[(ENDS[0] + WALL + INNER_ROUND, 0.0), (ENDS[0] + WALL + INNER_ROUND, bed + curb), (ENDS[1] - WALL - INNER_ROUND, bed + curb), (ENDS[1] - WALL - INNER_ROUND, 0.0)]]
+        wall.append(
+            [
+                (-foot_x, FLOOR),
+                *[(i - foot_x, FOOT - b) for i, b, *_ in lip],
+                *[(foot_x - i, FOOT - b) for i, b, *_ in reversed(lip)],
+                (foot_x, FLOOR),
+            ]
+        )
+        inside = [
+            [
+                (ENDS[0] + WALL + INNER_ROUND, 0.0),
+                (ENDS[0] + WALL + INNER_ROUND, bed + curb),
+                (ENDS[1] - WALL - INNER_ROUND, bed + curb),
+                (ENDS[1] - WALL - INNER_ROUND, 0.0),
+            ]
+        ]
         for x, r, bore in zip(SHAFT_X, BOSS, BORE):
             sides = [[((RIB_HALF, SIDE + off), (1.0, 0.0)) for _, off, *_ in FILLET] + [RIB[0][1]]]
             sides.append([((-p, q), (-1.0, 0.0)) for (p, q), _ in reversed(sides[0])])
@@ -772,8 +814,8 @@ def housing_base():
             left, right = [[(x + q * math.cos(a), -q * math.sin(a)) for a in angles] for angles in boss_arcs(q, True)]
             wall.append([*left, (x + RIB_HALF, FOOT), (x - RIB_HALF, FOOT), *right])
             inside.append([(x + bore * math.cos(a), -bore * math.sin(a)) for a in steps(0.0, math.pi, 20)])
-        solid.flat(wall, upright(z * SIDE), (0.0, 0.0, float(z)))
-        solid.flat(inside, upright(z * (SIDE - WALL)), (0.0, 0.0, -float(z)))
+        solid.flat(wall, level(z * SIDE), (0.0, 0.0, float(z)))
+        solid.flat(inside, level(z * (SIDE - WALL)), (0.0, 0.0, -float(z)))
         solid.flat(tops, ground(FOOT), (0.0, 1.0, 0.0))
         bottom += bottoms
     solid.flat(bottom, ground(FLOOR), (0.0, -1.0, 0.0))
@@ -801,7 +843,9 @@ def hexagon(solid, across, low, high, chamfers, columns=4):
         if chamfer:
             ring = circle(0, 0, inside, count) + [(inside, 0.0)]
             normals = [unit((x * tilt / inside, y * tilt / inside, -s)) for x, y in ring]
-            solid.grid([[((x, y, z + s * d), n) for (x, y, d), n in zip(corners, normals)], [((x, y, z), n) for (x, y), n in zip(ring, normals)]])
+            solid.grid(
+                [[((x, y, z + s * d), n) for (x, y, d), n in zip(corners, normals)], [((x, y, z), n) for (x, y), n in zip(ring, normals)]]
+            )
             loops.append(ring[:-1])
         else:
             loops.append([(x, y) for x, y, _ in corners[:-1]])
@@ -831,7 +875,9 @@ def socket_screw(radius, length, head_radius, head, across):
     solid = Solid()
     count, bottom = 12, head / 2
     top = head_radius - 0.6
-    solid.revolve(outline([(0, -length), (radius, -length), (radius, 0), (head_radius, 0), (head_radius, head, -0.6), (top, head)], False), count)
+    solid.revolve(
+        outline([(0, -length), (radius, -length), (radius, 0), (head_radius, 0), (head_radius, head, -0.6), (top, head)], False), count
+    )
     corners = circle(0, 0, across / math.sqrt(3), 6)
     solid.flat([circle(0, 0, top, count), corners], level(head), (0.0, 0.0, 1.0))
     solid.wall([line(q, p) for p, q in zip(corners, corners[1:] + corners[:1])], level(bottom), level(head))
@@ -866,7 +912,18 @@ def guard(radius, half, thick, deep, start, stop, count=14):
     """A gutter of sheet metal around the lower part of a wheel, its sides turned inward; angles from +x."""
     solid = Solid()
     r, w = radius + thick, half + thick
-    section = outline([(r, -w), (r, w), (radius - deep, w), (radius - deep, half), (radius, half), (radius, -half), (radius - deep, -half), (radius - deep, -w)])
+    section = outline(
+        [
+            (r, -w),
+            (r, w),
+            (radius - deep, w),
+            (radius - deep, half),
+            (radius, half),
+            (radius, -half),
+            (radius - deep, -half),
+            (radius - deep, -w),
+        ]
+    )
     turns = [(math.cos(a), math.sin(a)) for a in steps(start, stop, count)]
     for piece in section:
         solid.grid([[((q * c, q * s, z), (m * c, m * s, n)) for c, s in turns] for (q, z), (m, n) in piece])
@@ -889,7 +946,9 @@ def coil(outside, inside, count=8):
     for radius, facing in ((outside, 1), (inside, -1)):
         rows = []
         for (x, z), (u, w) in way:
-            rows.append([((x - radius * c * w, radius * s, z + radius * c * u), (-facing * c * w, facing * s, facing * c * u)) for c, s in around])
+            rows.append(
+                [((x - radius * c * w, radius * s, z + radius * c * u), (-facing * c * w, facing * s, facing * c * u)) for c, s in around]
+            )
         solid.grid(rows)
     for z in (-30.0, 30.0):
         side = 1 if z < 0 else -1
@@ -913,7 +972,7 @@ class Bearing:
     def __init__(self, bore, outside, width, ball_radius, balls):
         self.bore, self.outside, self.width, self.ball, self.balls = bore, outside, width, ball_radius, balls
         self.pitch = (bore + outside) / 2
-        self.groove = 1.04 * ball_radius
+        self.groove = 1.07 * ball_radius
         self.lands = (self.pitch - 0.55 * ball_radius, self.pitch + 0.55 * ball_radius)
 
     def race(self, outer):
@@ -935,13 +994,14 @@ class Bearing:
 
     def cage(self):
         solid = Solid()
-        pocket, reach, high = self.ball + 0.2, math.radians(84), self.ball + 1.5
-        edge = []  # of all pockets: (angle about z, height, tangential and axial part of the normal)
-        pieces = []
+        pocket, reach, high = 1.08 * self.ball + 0.1, math.radians(84), 1.08 * self.ball + 1.3
+        pieces = []  # of its lower edge: (angle about z, height, tangential and axial part of the normal)
         for k in range(self.balls):
             piece = []
             for t in steps(-reach, reach, 4):
-                piece.append((TAU * k / self.balls + math.asin(pocket * math.sin(t) / self.pitch), pocket * math.cos(t), -math.sin(t), -math.cos(t)))
+                piece.append(
+                    (TAU * k / self.balls + math.asin(pocket * math.sin(t) / self.pitch), pocket * math.cos(t), -math.sin(t), -math.cos(t))
+                )
             pieces.append(piece)
             a, b = piece[-1], TAU / self.balls + pieces[-1][0][0]
             pieces.append([(a[0], a[1], 0.0, -1.0), ((a[0] + b) / 2, a[1], 0.0, -1.0), (b, a[1], 0.0, -1.0)])
@@ -981,14 +1041,20 @@ def shaft(corners, count=48, keyway=None):
     last = math.pi - first
     regular = [step * i for i in range(2 * count)]
     bend = {math.acos(width / 2 * math.cos(t) / radius) for t in steps(0, math.pi, 10)}
-    slot = sorted(a for a in {*bend, *regular} if first - 1e-9 <= a <= last + 1e-9)
+    near = [a for a in regular if first + 0.01 < a < last - 0.01]
+    slot = sorted([*near, *[a for a in bend if all(abs(a - b) > 0.02 for b in near)]])
     half = at(slot[0])[0]
     rest = [last, *[a for a in regular if last + 1e-6 < a < first + TAU - 1e-6], first + TAU]
     solid.grid([[((*at(a), z), (math.cos(a), math.sin(a), 0.0)) for a in rest] for z in (low, high)])
     ends = []
     for z, facing, limit in ((start + half, -1, low), (stop - half, 1, high)):
         curve = [(a, z + facing * math.sqrt(max(0.0, half**2 - at(a)[0] ** 2))) for a in slot]
-        solid.grid([[((*at(a), q), (math.cos(a), math.sin(a), 0.0)) for a, q in curve], [((*at(a), limit), (math.cos(a), math.sin(a), 0.0)) for a in slot]])
+        solid.grid(
+            [
+                [((*at(a), q), (math.cos(a), math.sin(a), 0.0)) for a, q in curve],
+                [((*at(a), limit), (math.cos(a), math.sin(a), 0.0)) for a in slot],
+            ]
+        )
         wall = [(at(a), q, (-at(a)[0] / half, 0.0, (z - q) / half)) for a, q in curve]
         solid.grid([[((x, bottom if deep else y, q), n) for (x, y), q, n in wall] for deep in (False, True)])
         ends.append([((x, y), q) for (x, y), q, _ in wall])
@@ -1004,12 +1070,23 @@ def shaft(corners, count=48, keyway=None):
 def feather_key(width, height, length):
     """Along z, from y = 0 upward, with round ends."""
     solid = Solid()
-    plan = outline([(-width / 2, 0, width / 2 - 1e-4), (width / 2, 0, width / 2 - 1e-4), (width / 2, length, width / 2 - 1e-4), (-width / 2, length, width / 2 - 1e-4)], True, 6)
+    half = width / 2
+    plan = [
+        arc(0, half, half, TAU / 2, TAU, 10),
+        line((half, half), (half, length - half)),
+        arc(0, length - half, half, 0, TAU / 2, 10),
+        line((-half, length - half), (-half, half)),
+    ]
     cut = 0.4
     top = shifted(plan, cut)
     solid.wall(plan, ground(0.0), ground(height - cut))
     for low, high in zip(plan, top):
-        solid.grid([[((p[0], height - cut, p[1]), unit((n[0], 1.0, n[1]))) for p, n in low], [((p[0], height, p[1]), unit((n[0], 1.0, n[1]))) for p, n in high]])
+        solid.grid(
+            [
+                [((p[0], height - cut, p[1]), unit((n[0], 1.0, n[1]))) for p, n in low],
+                [((p[0], height, p[1]), unit((n[0], 1.0, n[1]))) for p, n in high],
+            ]
+        )
     solid.flat([points(plan)], ground(0.0), (0.0, -1.0, 0.0))
     solid.flat([points(top)], ground(height), (0.0, 1.0, 0.0))
     return solid
@@ -1030,7 +1107,7 @@ def end_cap(i, thick, spigot, recess, pocket=None, bore=None):
         solid.revolve(outline([(0, -3), *under], False), count)
     solid.revolve(outline(path_in, False, 2), count)
     on, radius, angles = CAP_SCREWS[i]
-    holes = [solid.hole((on * math.cos(a), on * math.sin(a)), radius + 0.3, 10, level(0.0), level(thick)) for a in angles]
+    holes = [solid.hole((on * math.cos(a), on * math.sin(a)), radius + 0.2, 10, level(0.0), level(thick)) for a in angles]
     solid.flat([circle(0, 0, rim - 1.2, count), circle(0, 0, inner, count), *holes], level(thick), (0.0, 0.0, 1.0))
     solid.flat([circle(0, 0, rim, count), circle(0, 0, seat, count), *holes], level(0.0), (0.0, 0.0, -1.0))
     return solid
@@ -1038,7 +1115,9 @@ def end_cap(i, thick, spigot, recess, pocket=None, bore=None):
 
 def seal(inside, outside, width):
     lip = [(inside + 2.4, width - 1.6), (inside + 1.6, width), (inside + 0.04, width - 1.5), (inside + 1, width - 3.2)]
-    return revolved([(inside + 1, 0), (outside, 0, -0.6), (outside, width, -0.6), (outside - 3.2, width), (outside - 4.2, width - 1.6), *lip], 30)
+    return revolved(
+        [(inside + 1, 0), (outside, 0, -0.6), (outside, width, -0.6), (outside - 3.2, width), (outside - 4.2, width - 1.6), *lip], 30
+    )
 
 
 def plate(half_x, half_z, corner, thick, holes, chamfer=0.0, opening=None):
@@ -1066,7 +1145,7 @@ def plate(half_x, half_z, corner, thick, holes, chamfer=0.0, opening=None):
 MATERIALS = {
     "Cast iron": ((0.055, 0.13, 0.17, 1.0), 0.1, 0.55),
     "Steel": ((0.56, 0.57, 0.58, 1.0), 1.0, 0.42),
-    "Hardened steel": ((0.46, 0.46, 0.49, 1.0), 1.0, 0.26),
+    "Hardened steel": ((0.40, 0.41, 0.45, 1.0), 1.0, 0.28),
     "Zinc-plated": ((0.62, 0.63, 0.60, 1.0), 1.0, 0.36),
     "Brass": ((0.80, 0.56, 0.22, 1.0), 1.0, 0.3),
     "Rubber": ((0.014, 0.014, 0.016, 1.0), 0.0, 0.8),
@@ -1094,6 +1173,8 @@ LEFT = quaternion(1, -90)  # turns z to -x
 
 
 class Node:
+    """A part or a group; `mirrored` flips z before it is turned and moved."""
+
     def __init__(self, name, mesh=None, at=(0.0, 0.0, 0.0), turn=None, mirrored=False):
         self.name, self.mesh, self.at, self.turn, self.mirrored, self.children = name, mesh, at, turn, mirrored, []
 
@@ -1138,7 +1219,16 @@ class Gearbox:
         seat = 12.5 - FIT
         x1, x2, x3 = SHAFT_X
         helix = math.acos((21 + 67) * 2 / 2 / (x2 - x1))
-        corners = [(0, -67), (2.5, -71), (seat, -71, -1), (seat, -54), (14 - FIT, -54, -0.4), (14 - FIT, -9), (18, -9, -0.6), (18, -5, -0.6)]
+        corners = [
+            (0, -67),
+            (2.5, -71),
+            (seat, -71, -1),
+            (seat, -54),
+            (14 - FIT, -54, -0.4),
+            (14 - FIT, -9),
+            (18, -9, -0.6),
+            (18, -5, -0.6),
+        ]
         corners += [(15.5, -5, 2), (15.5, 54, -0.6), (seat, 54), (seat, 92, -0.6), (11, 92, 1), (11, 142, -1.2), (2.5, 142), (0, 138)]
         group = self.root.add("Input stage", at=(x1, 0.0, 0.0))
         group.add("Input shaft", self.mesh("input shaft", "Steel", shaft(corners, 32, (11, 92, 142, 98, 134, 6 + FIT, 11 - 3.5))))
@@ -1148,7 +1238,16 @@ class Gearbox:
         group.add("Spacer 1", spacer, (0.0, 0.0, -54.0))
 
         group = self.root.add("Intermediate stage", at=(x2, 0.0, 0.0))
-        corners = [(0, -67), (2.5, -71), (seat, -71, -1), (seat, -54), (15 - FIT, -54, -0.4), (15 - FIT, -9), (20, -9, -0.8), (20, -1, -0.8)]
+        corners = [
+            (0, -67),
+            (2.5, -71),
+            (seat, -71, -1),
+            (seat, -54),
+            (15 - FIT, -54, -0.4),
+            (15 - FIT, -9),
+            (20, -9, -0.8),
+            (20, -1, -0.8),
+        ]
         corners += [(15 - FIT, -1), (15 - FIT, 54, -0.4), (seat, 54), (seat, 71, -1), (2.5, 71), (0, 67)]
         group.add("Intermediate shaft", self.mesh("intermediate shaft", "Steel", shaft(corners, 32)))
         wheel = gear(67, 2, 24, 15, helix, -1, 1, 1, (58, 25, 28, 9, 6, 41.5, 8))
@@ -1160,7 +1259,17 @@ class Gearbox:
 
         group = self.root.add("Output stage", at=(x3, 0.0, 0.0))
         seat = 20 - FIT
-        corners = [(0, -66), (3, -72), (seat, -72, -1), (seat, -52), (24, -52, -0.6), (24, -10, 2), (29, -10, -0.8), (29, -2, -0.8), (23 - FIT, -2)]
+        corners = [
+            (0, -66),
+            (3, -72),
+            (seat, -72, -1),
+            (seat, -52),
+            (24, -52, -0.6),
+            (24, -10, 2),
+            (29, -10, -0.8),
+            (29, -2, -0.8),
+            (23 - FIT, -2),
+        ]
         corners += [(23 - FIT, 52, -0.5), (seat, 52), (seat, 94, -0.6), (19, 94, 0.6), (19, 166, -1.6), (3, 166), (0, 160)]
         group.add("Output shaft", self.mesh("output shaft", "Steel", shaft(corners, 40, (19, 94, 166, 104, 156, 10 + FIT, 19 - 5))))
         group.add("Key output", self.mesh("key 10 x 8 x 52", "Steel", feather_key(10, 8, 52 - FIT)), (0.0, 19 - 5 + FIT, 104 + FIT / 2))
@@ -1188,7 +1297,10 @@ class Gearbox:
     def bearings(self):
         group = self.root.add("Bearings")
         number = 0
-        for kind, dimensions, z, shafts in (("6205", (12.5, 26, 15, 3.97, 9), 61.5, SHAFT_X[:2]), ("6208", (20, 40, 18, 5.95, 9), 61.0, SHAFT_X[2:])):
+        for kind, dimensions, z, shafts in (
+            ("6205", (12.5, 26, 15, 3.97, 9), 61.5, SHAFT_X[:2]),
+            ("6208", (20, 40, 18, 5.95, 9), 61.0, SHAFT_X[2:]),
+        ):
             bearing = Bearing(*dimensions)
             outer = self.mesh(f"{kind} outer ring", "Hardened steel", bearing.race(True))
             inner = self.mesh(f"{kind} inner ring", "Hardened steel", bearing.race(False))
@@ -1217,7 +1329,9 @@ class Gearbox:
             bolts.add(f"Washer {2 * k - 1}", washer, (x, FLANGE, z), UP)
             bolts.add(f"Washer {2 * k}", washer, (x, -FLANGE, z), DOWN)
             bolts.add(f"Nut {k}", m8, (x, -FLANGE - 1.6, z), after(DOWN, quaternion(2, 23.0 * k)))
-        pin = self.mesh("dowel pin 8 x 28", "Steel", revolved([(0, -14), (DOWEL - SEAT, -14, -1), (DOWEL - SEAT, 14, -0.6), (0, 14)], 16, False))
+        pin = self.mesh(
+            "dowel pin 8 x 28", "Steel", revolved([(0, -14), (DOWEL - SEAT, -14, -1), (DOWEL - SEAT, 14, -0.6), (0, 14)], 16, False)
+        )
         for k, (x, z) in enumerate(DOWELS, 1):
             bolts.add(f"Dowel pin {k}", pin, (x, 0.5, z), UP)
         m5 = self.mesh("screw M5 x 16", "Zinc-plated", socket_screw(2.44, 16, 4.25, 5, 4))
@@ -1228,11 +1342,18 @@ class Gearbox:
                 for a in angles:
                     number += 1
                     spin = quaternion(2, 41.0 * number)
-                    bolts.add(f"Screw {number}", mesh, (x + on * math.cos(a), on * math.sin(a), side * (FACE + thick)), spin if side > 0 else after(BACK, spin))
+                    bolts.add(
+                        f"Screw {number}",
+                        mesh,
+                        (x + on * math.cos(a), on * math.sin(a), side * (FACE + thick)),
+                        spin if side > 0 else after(BACK, spin),
+                    )
         place, n, _ = flat_frame(0.0)
         self.tilt = quaternion(2, math.degrees(math.atan2(n[1], n[0])) - 90)
         for number, (x, z) in enumerate(LID_SCREWS, 1):
-            bolts.add(f"Lid screw {number}", m5, add(place((x, z)), scale(n, 6.0)), after(self.tilt, after(UP, quaternion(2, 41.0 * number))))
+            bolts.add(
+                f"Lid screw {number}", m5, add(place((x, z)), scale(n, 6.0)), after(self.tilt, after(UP, quaternion(2, 41.0 * number)))
+            )
 
     def fittings(self):
         fittings = self.root.add("Fittings")
@@ -1241,12 +1362,17 @@ class Gearbox:
         screws = [(x, z, 2.8) for x, z in LID_SCREWS]
         opening = box(-OPENING[0], OPENING[0], -OPENING[1], OPENING[1], OPENING[2])
         fittings.add("Gasket", self.mesh("gasket", "Rubber", plate(44, 36, 9, 1.0, screws, 0.0, opening)), at(0.0), self.tilt)
-        fittings.add("Inspection lid", self.mesh("inspection lid", "Steel", plate(44, 36, 9, 5.0, [*screws, (0.0, 0.0, 6.0)], 0.8)), at(1.0), self.tilt)
+        fittings.add(
+            "Inspection lid",
+            self.mesh("inspection lid", "Steel", plate(44, 36, 9, 5.0, [*screws, (0.0, 0.0, 6.0)], 0.8)),
+            at(1.0),
+            self.tilt,
+        )
         above = [(5.5, 6), (5.5, 9, 0.8), (11.5, 9, 1.0), (11.5, 17, 2.5), (8.5, 19.5, 2.0)]
         breather = hex_bolt(17, 6, 5.9, 10, 3, above)
         fittings.add("Breather", self.mesh("breather", "Brass", breather), at(6.0), after(self.tilt, UP))
         x = ENDS[1]
-        corners = [(10.5, -9), (14.9, -9, -0.8), (14.9, 0), (20, 0), (20, 6, 1.5), (13.6, 6), (12.5, 4.9), (12.5, -2), (10.5, -2)]
+        corners = [(10.5, -9), (14.7, -9, -0.8), (14.7, 0), (20, 0), (20, 6, 1.5), (13.6, 6), (12.5, 4.9), (12.5, -2), (10.5, -2)]
         fittings.add("Sight glass ring", self.mesh("sight glass ring", "Brass", revolved(corners, 30)), (x, *SIGHT[:2]), RIGHT)
         glass = [(0, -1.9), (12.5 - FIT, -1.9), (12.5 - FIT, 3.0, -0.4), (8, 3.4), (0, 3.6)]
         fittings.add("Sight glass", self.mesh("sight glass", "Glass", revolved(glass, 30, False)), (x, *SIGHT[:2]), RIGHT)
@@ -1262,11 +1388,12 @@ def number(value, decimals):
     return round(value, decimals) + 0.0
 
 
-def glb(box_):
+def glb(gearbox):
+    """The file: one primitive for each mesh, all places, normals and indices in a view of their own."""
     materials, meshes, nodes, accessors = list(MATERIALS), [], [], []
     places, normals, indices = bytearray(), bytearray(), bytearray()
     index_of = {}
-    for name, (material, solid) in box_.meshes.items():
+    for name, (material, solid) in gearbox.meshes.items():
         vertices, order = {}, []
         for triangle in solid.triangles:
             for p, n in triangle:
@@ -1275,13 +1402,25 @@ def glb(box_):
         packed = [struct.pack("<3f", *[c * 0.001 for c in v[:3]]) for v in vertices]
         exact = list(zip(*[struct.unpack("<3f", p) for p in packed]))
         first = len(accessors)
-        accessors.append({"bufferView": 0, "byteOffset": len(places), "componentType": 5126, "count": len(vertices), "type": "VEC3", "min": [min(c) for c in exact], "max": [max(c) for c in exact]})
+        accessors.append(
+            {
+                "bufferView": 0,
+                "byteOffset": len(places),
+                "componentType": 5126,
+                "count": len(vertices),
+                "type": "VEC3",
+                "min": [min(c) for c in exact],
+                "max": [max(c) for c in exact],
+            }
+        )
         accessors.append({"bufferView": 1, "byteOffset": len(normals), "componentType": 5126, "count": len(vertices), "type": "VEC3"})
         places += b"".join(packed)
         for v in vertices:
             normals += struct.pack("<3f", *unit(v[3:]))
         wide = len(vertices) > 65535
-        accessors.append({"bufferView": 2, "byteOffset": len(indices), "componentType": 5125 if wide else 5123, "count": len(order), "type": "SCALAR"})
+        accessors.append(
+            {"bufferView": 2, "byteOffset": len(indices), "componentType": 5125 if wide else 5123, "count": len(order), "type": "SCALAR"}
+        )
         indices += struct.pack(f"<{len(order)}{'I' if wide else 'H'}", *order)
         indices += bytes(-len(indices) % 4)
         primitive = {"attributes": {"POSITION": first, "NORMAL": first + 1}, "indices": first + 2, "material": materials.index(material)}
@@ -1304,7 +1443,7 @@ def glb(box_):
             entry["children"] = [put(child) for child in node.children]
         return where
 
-    put(box_.root)
+    put(gearbox.root)
     shades = []
     for name, (colour, metallic, rough) in MATERIALS.items():
         shade = {"name": name, "pbrMetallicRoughness": {"baseColorFactor": colour, "metallicFactor": metallic, "roughnessFactor": rough}}
@@ -1342,7 +1481,7 @@ def turn_by(q, p):
     return add(p, add(scale(t, q[3]), cross(q[:3], t)))
 
 
-def placed(box_):
+def placed(gearbox):
     """Each node with a mesh, and the function that puts the mesh's points into the scene."""
 
     def walk(node, outer):
@@ -1358,14 +1497,14 @@ def placed(box_):
         for child in node.children:
             yield from walk(child, put)
 
-    yield from walk(box_.root, lambda p: p)
+    yield from walk(gearbox.root, lambda p: p)
 
 
-def layers(box_, size):
+def layers(gearbox, size):
     """Surfaces along each ray of a square grid over the scene, along -z."""
     triangles = []
-    for node, put in placed(box_):
-        _, solid = box_.meshes[node.mesh]
+    for node, put in placed(gearbox):
+        _, solid = gearbox.meshes[node.mesh]
         triangles += [[put(p)[:2] for p, _ in t] for t in solid.triangles]
     low, high = [[f(p[i] for t in triangles for p in t) for i in range(2)] for f in (min, max)]
     cell = max(high[0] - low[0], high[1] - low[1]) / size
@@ -1401,7 +1540,9 @@ def main():
     if "--layers" in arguments:
         size = int((arguments[arguments.index("--layers") + 1 :] or ["200"])[0])
         counts = layers(gearbox, size)
-        print(f"layers: covered {len(counts) / size**2:.3f}, median {counts[len(counts) // 2]}, mean {sum(counts) / len(counts):.2f}, maximum {counts[-1]}")
+        print(
+            f"layers: covered {len(counts) / size**2:.3f}, median {counts[len(counts) // 2]}, mean {sum(counts) / len(counts):.2f}, maximum {counts[-1]}"
+        )
         return 0
     files = {"gearbox.glb": data}
     if "--check" not in arguments:
