@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes the mesh that restyle ships, a two-stage gearbox, from formulas.
+"""Writes the meshes that restyle ships, a two-stage gearbox and a bracket, from formulas.
 
-    python3 make.py               write gearbox.glb beside this script
-    python3 make.py --check       compare instead; exit 1 if it differs, is missing or another .glb is not made here
+    python3 make.py               write every file beside this script
+    python3 make.py --check       compare instead; exit 1 if a file differs, is missing or is not made here
     python3 make.py --layers [N]  count the surfaces along N x N parallel rays of the default view (200)
 
 glTF 2.0 binary in metres; here lengths are in millimetres and angles in radians unless a name says otherwise. Standard library only.
@@ -1016,9 +1016,9 @@ class Bearing:
 
 
 def shaft(corners, count=48, keyway=None):
-    """From (radius, z) along the outside. `keyway`: radius and limits of its cylinder, limits of the slot, its width and its bottom's height.
+    """From (radius, z) along the outside.
 
-    The slot has round ends and points to +y.
+    `keyway`: radius and limits of its cylinder, limits of the slot, its width and the height of its bottom. It has round ends and points to +y.
     """
     solid = Solid()
     pieces = outline(corners, False, 2)
@@ -1139,6 +1139,39 @@ def plate(half_x, half_z, corner, thick, holes, chamfer=0.0, opening=None):
     return solid
 
 
+def angle_bracket(leg=80.0, thick=10.0, width=64.0, round_=12.0, fillet=8.0):
+    """Legs along +x and +y, both from z = 0; alike but for their holes."""
+    solid = Solid()
+    plan = outline([(0, 0), (leg, 0, round_), (leg, width, round_), (0, width)], False, 8)
+    inner = thick + fillet
+    near = [(inner, 0.0), *path(plan[1:-1]), (inner, width)]
+    bores = [((48.0, 32.0), 14.0, 14.0)] + [((48.0 + a, 32.0 + b), 2.75, 2.75) for a in (-17.0, 17.0) for b in (-17.0, 17.0)]
+    lying = lambda h: lambda p: (p[0], h, p[1])
+    standing = lambda h: lambda p: (h, p[0], p[1])
+    for put, holes in ((lying, [((56.0, 16.0), 4.5, 7.5), ((56.0, 48.0), 4.5, 7.5)]), (standing, bores)):
+        up = put(1.0)((0.0, 0.0))
+        solid.wall(plan[1:-1], put(0.0), put(thick))
+        below, above = [path(plan)], [near]
+        for centre, radius, wide in holes:
+            count, step = (36 if radius > 10 else 20), thick
+            if wide > radius:
+                step = thick / 2
+                above.append(solid.hole(centre, wide, count, put(step), put(thick)))
+                solid.flat([above[-1], circle(*centre, radius, count)], put(step), up)
+            below.append(solid.hole(centre, radius, count, put(0.0), put(step)))
+            if wide == radius:
+                above.append(below[-1])
+        solid.flat(below, put(0.0), scale(up, -1.0))
+        solid.flat(above, put(thick), up)
+    bend = [arc(inner, inner, fillet, TAU * 3 / 4, TAU / 2, 8, -1)]
+    solid.wall(bend, level(0.0), level(width))
+    end = leg - round_
+    side = [(0.0, 0.0), (end, 0.0), (end, thick), *path(bend), (thick, end), (0.0, end)]
+    for z, facing in ((0.0, -1.0), (width, 1.0)):
+        solid.flat([side], level(z), (0.0, 0.0, facing))
+    return solid
+
+
 # --- the assembly -----------------------------------------------------------
 
 # Base colour (linear), metallic, roughness.
@@ -1184,22 +1217,29 @@ class Node:
         return node
 
 
-class Gearbox:
-    """Meshes, each with its material, and the tree that places them."""
+class Assembly:
+    """Meshes, each with its material, and the tree that places them; the root turns it for the default view."""
+
+    def __init__(self, name):
+        self.meshes = {}
+        self.root = Node(name, turn=after(quaternion(0, 28), quaternion(1, -37)))
+
+    def mesh(self, name, material, solid):
+        self.meshes[name] = (material, solid.sewn(name))
+        return name
+
+
+class Gearbox(Assembly):
+    """A speed reducer of ratio 10.5: a helical stage 21 : 67 and a spur stage 21 : 69."""
 
     def __init__(self):
-        self.meshes = {}
-        self.root = Node("Reducer", turn=after(quaternion(0, 28), quaternion(1, -37)))
+        super().__init__("Reducer")
         self.casing()
         self.gears()
         self.guards()
         self.bearings()
         self.fasteners()
         self.fittings()
-
-    def mesh(self, name, material, solid):
-        self.meshes[name] = (material, solid.sewn(name))
-        return name
 
     def casing(self):
         casing = self.root.add("Casing")
@@ -1380,6 +1420,14 @@ class Gearbox:
         fittings.add("Drain plug", self.mesh("drain plug", "Zinc-plated", hex_bolt(17, 7, 7.9, 12, 3)), (x + 1.5, *DRAIN[:2]), RIGHT)
 
 
+class Bracket(Assembly):
+    """One small part: an angle of 80 x 80 x 10 with a fillet, a bore and counterbored holes."""
+
+    def __init__(self):
+        super().__init__("Bracket")
+        self.root.add("Angle bracket", self.mesh("angle bracket", "Steel", angle_bracket()))
+
+
 # --- the file ---------------------------------------------------------------
 
 
@@ -1388,12 +1436,14 @@ def number(value, decimals):
     return round(value, decimals) + 0.0
 
 
-def glb(gearbox):
+def glb(scene):
     """The file: one primitive for each mesh, all places, normals and indices in a view of their own."""
-    materials, meshes, nodes, accessors = list(MATERIALS), [], [], []
+    used = {material for material, _ in scene.meshes.values()}
+    materials = [name for name in MATERIALS if name in used]
+    meshes, nodes, accessors = [], [], []
     places, normals, indices = bytearray(), bytearray(), bytearray()
     index_of = {}
-    for name, (material, solid) in gearbox.meshes.items():
+    for name, (material, solid) in scene.meshes.items():
         vertices, order = {}, []
         for triangle in solid.triangles:
             for p, n in triangle:
@@ -1443,9 +1493,10 @@ def glb(gearbox):
             entry["children"] = [put(child) for child in node.children]
         return where
 
-    put(gearbox.root)
+    put(scene.root)
     shades = []
-    for name, (colour, metallic, rough) in MATERIALS.items():
+    for name in materials:
+        colour, metallic, rough = MATERIALS[name]
         shade = {"name": name, "pbrMetallicRoughness": {"baseColorFactor": colour, "metallicFactor": metallic, "roughnessFactor": rough}}
         if colour[3] < 1:
             shade["alphaMode"] = "BLEND"
@@ -1458,7 +1509,7 @@ def glb(gearbox):
     tree = {
         "asset": {"version": "2.0", "generator": "restyle meshes/make.py"},
         "scene": 0,
-        "scenes": [{"name": "Gearbox", "nodes": [0]}],
+        "scenes": [{"name": scene.root.name, "nodes": [0]}],
         "nodes": nodes,
         "meshes": meshes,
         "materials": shades,
@@ -1481,7 +1532,7 @@ def turn_by(q, p):
     return add(p, add(scale(t, q[3]), cross(q[:3], t)))
 
 
-def placed(gearbox):
+def placed(scene):
     """Each node with a mesh, and the function that puts the mesh's points into the scene."""
 
     def walk(node, outer):
@@ -1497,14 +1548,14 @@ def placed(gearbox):
         for child in node.children:
             yield from walk(child, put)
 
-    yield from walk(gearbox.root, lambda p: p)
+    yield from walk(scene.root, lambda p: p)
 
 
-def layers(gearbox, size):
+def layers(scene, size):
     """Surfaces along each ray of a square grid over the scene, along -z."""
     triangles = []
-    for node, put in placed(gearbox):
-        _, solid = gearbox.meshes[node.mesh]
+    for node, put in placed(scene):
+        _, solid = scene.meshes[node.mesh]
         triangles += [[put(p)[:2] for p, _ in t] for t in solid.triangles]
     low, high = [[f(p[i] for t in triangles for p in t) for i in range(2)] for f in (min, max)]
     cell = max(high[0] - low[0], high[1] - low[1]) / size
@@ -1530,21 +1581,23 @@ def layers(gearbox, size):
 
 
 def main():
-    gearbox = Gearbox()
-    parts = list(placed(gearbox))
-    triangles = sum(len(gearbox.meshes[node.mesh][1].triangles) for node, _ in parts)
-    stored = sum(len(solid.triangles) for _, solid in gearbox.meshes.values())
-    data = glb(gearbox)
-    print(f"gearbox.glb: {len(parts)} parts of {len(gearbox.meshes)} meshes, {triangles} triangles ({stored} stored), {len(data)} bytes")
     arguments = sys.argv[1:]
+    scenes = {"gearbox.glb": Gearbox(), "bracket.glb": Bracket()}
+    files = {name: glb(scene) for name, scene in scenes.items()}
+    for name, scene in scenes.items():
+        parts = [node.mesh for node, _ in placed(scene)]
+        count = {mesh: len(solid.triangles) for mesh, (_, solid) in scene.meshes.items()}
+        print(
+            f"{name}: {len(parts)} parts of {len(count)} meshes, {sum(map(count.get, parts))} triangles "
+            f"({sum(count.values())} stored), {len(files[name])} bytes"
+        )
     if "--layers" in arguments:
         size = int((arguments[arguments.index("--layers") + 1 :] or ["200"])[0])
-        counts = layers(gearbox, size)
-        print(
-            f"layers: covered {len(counts) / size**2:.3f}, median {counts[len(counts) // 2]}, mean {sum(counts) / len(counts):.2f}, maximum {counts[-1]}"
-        )
+        for name, scene in scenes.items():
+            n = layers(scene, size)
+            mean = sum(n) / len(n)
+            print(f"{name}: covered {len(n) / size**2:.3f}, layers: median {n[len(n) // 2]}, mean {mean:.2f}, maximum {n[-1]}")
         return 0
-    files = {"gearbox.glb": data}
     if "--check" not in arguments:
         for name, content in files.items():
             (HERE / name).write_bytes(content)
