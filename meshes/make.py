@@ -150,6 +150,11 @@ def area_of(loop):
     return sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(loop, loop[1:] + loop[:1])) / 2
 
 
+def order(p):
+    """To compare points by, alike on all machines: last bits do not count."""
+    return round(p[0], 6), round(p[1], 6)
+
+
 def holds(loop, p):
     """Whether the loop is around p, by the crossings of a ray."""
     inside = False
@@ -161,10 +166,10 @@ def holds(loop, p):
 
 def bridged(outer, holes):
     """One loop: each hole, rightmost first, joined to the nearest corner that it sees."""
-    holes = sorted(holes, key=lambda h: -max(h)[0])
+    holes = sorted(holes, key=lambda h: max(map(order, h)), reverse=True)
     loop = list(outer)
     for number, hole in enumerate(holes):
-        start = hole.index(max(hole))
+        start = max(range(len(hole)), key=lambda i: order(hole[i]))
         p = hole[start]
         edges = [e for other in [loop, *holes[number:]] for e in zip(other, other[1:] + other[:1])]
 
@@ -181,7 +186,7 @@ def bridged(outer, holes):
                 return side_of(a, q, p) > 0 and side_of(q, b, p) > 0
             return side_of(a, q, p) > 0 or side_of(q, b, p) > 0
 
-        i = next(i for i in sorted(range(len(loop)), key=lambda i: math.dist(loop[i], p)) if seen(i))
+        i = next(i for i in sorted(range(len(loop)), key=lambda i: round(math.dist(loop[i], p), 6)) if seen(i))
         loop = loop[: i + 1] + hole[start:] + hole[: start + 1] + loop[i:]
     return loop
 
@@ -200,7 +205,7 @@ def ears(loop):
             p = loop[j]
             if p not in (a, b, c) and side_of(a, b, p) >= -1e-9 and side_of(b, c, p) >= -1e-9 and side_of(c, a, p) >= -1e-9:
                 return None
-        return math.dist(a, c)
+        return round(math.dist(a, c), 6)
 
     cuts = {i: cut(i) for i in after}
     triangles = []
@@ -220,20 +225,20 @@ def regions(loops):
     """Loops of the symmetric difference of all loops: edges that are there twice cancel, whole or in part."""
     known = {}
     loops = [[known.setdefault((round(x * 1e5 + 0.237), round(y * 1e5 + 0.237)), (x, y)) for x, y in loop] for loop in loops]
-    corners = sorted(known.values())
+    corners = [known[k] for k in sorted(known)]
     count = Counter()
     for loop in loops:
         for a, b in zip(loop, loop[1:] + loop[:1]):
             length, on = math.dist(a, b), []
             low, high = min(a[0], b[0]) - 1e-6, max(a[0], b[0]) + 1e-6
-            for p in corners:
+            for i, p in enumerate(corners):
                 if low <= p[0] <= high and abs(side_of(a, b, p)) < 1e-6 * length:
                     t = ((p[0] - a[0]) * (b[0] - a[0]) + (p[1] - a[1]) * (b[1] - a[1])) / length
                     if -1e-6 < t < length + 1e-6:
-                        on.append((t, p))
-            on = [p for _, p in sorted(on)]
-            for p, q in zip(on, on[1:]):
-                count[min(p, q), max(p, q)] += 1
+                        on.append((t, i))
+            on = [i for _, i in sorted(on)]
+            for i, j in zip(on, on[1:]):
+                count[min(i, j), max(i, j)] += 1
     next_to = {}
     for (p, q), times in sorted(count.items()):
         if times % 2:
@@ -244,7 +249,7 @@ def regions(loops):
         p = start = min(next_to)
         loop = []
         while True:
-            loop.append(p)
+            loop.append(corners[p])
             q = next_to[p].pop(0)
             next_to[q].remove(p)
             for r in (p, q):
@@ -347,7 +352,7 @@ class Solid:
                 shares = [(dot(sub(p, a), way) / length**2, p) for k, p in corners.items() if k not in e]
                 on = [(s, p) for s, p in shares if 0 < s < 1 and math.dist(p, add(a, scale(way, s))) < 1e-4]
                 if on:
-                    share, p = min(on, key=lambda o: abs(o[0] - 0.5))
+                    share, p = min(on, key=lambda o: round(abs(o[0] - 0.5), 6))
                     middle = (p, unit(add(scale(m, 1 - share), scale(n, share))))
                     result += [((a, m), middle, c), (middle, (b, n), c)]
                     break
@@ -572,8 +577,42 @@ def boss_arcs(radius, ribs):
     if not ribs:
         return [steps(start, math.pi - start, 18)]
     first = math.acos(RIB_HALF / radius)
-    arc_ = steps(start, first, 8)
-    return [arc_, [math.pi - a for a in reversed(arc_)]]
+    right = steps(start, first, 8)
+    return [right, [math.pi - a for a in reversed(right)]]
+
+
+def boss_half(solid, i, up, z, ribs):
+    """Half a boss with its bore and the holes of the cap's screws; `z` is the side, 1 or -1."""
+    x, r, bore = SHAFT_X[i], BOSS[i], BORE[i]
+    lip = rounding(EDGE, 2)
+
+    def at(radius, angle, height, side=1.0, rise=0.0):
+        """A point and its normal, whose shares along radius and axis are given."""
+        c, s = math.cos(angle), up * math.sin(angle)
+        return (x + radius * c, radius * s, z * height), (side * c, side * s, z * rise)
+
+    # Columns around the mantle: angle, and where along the axis it begins.
+    low = list(zip(boss_foot(r), [FLANGE_Z] + [FLANGE_Z - inset for inset, *_ in lip]))
+    mantle = [low] + [[(a, SIDE + FILLET[-1][1]) for a in part] for part in boss_arcs(r, ribs)]
+    if ribs:
+        mantle.insert(2, [(math.acos(p / r), q) for p, q in path(RIB[1:-1])])
+    mantle.append([(math.pi - a, s) for a, s in reversed(low)])
+    for columns in mantle:
+        solid.grid([[at(r, a, s) for a, s in columns], [at(r, a, FACE - EDGE) for a, _ in columns]])
+    for part in zip(*[boss_arcs(r + beyond, ribs) for beyond, *_ in FILLET]):
+        solid.grid([[at(r + beyond, a, SIDE + off, m, n) for a in angles] for (beyond, off, m, n), angles in zip(FILLET, part)])
+    around = [0.0] + [a for columns in mantle for a, _ in columns[1:]]
+    solid.grid([[at(r - inset, a, FACE - below, side, rise) for a in around] for inset, below, side, rise in lip])
+    inside = steps(0.0, math.pi, 20)
+    solid.grid([[at(bore, a, q, -1.0) for a in inside] for q in (SIDE - WALL, FACE)])
+    face = [[at(r - EDGE, a, FACE)[0][:2] for a in around] + [at(bore, a, FACE)[0][:2] for a in reversed(inside)]]
+    on, radius, angles = CAP_SCREWS[i]
+    for a in angles:
+        if math.sin(a) * up > 0:
+            c = (x + on * math.cos(a), on * math.sin(a))
+            face.append(solid.hole(c, radius, 8, level(z * (FACE - 14)), level(z * FACE)))
+            solid.flat([face[-1]], level(z * (FACE - 14)), (0.0, 0.0, float(z)))
+    solid.flat(face, level(z * FACE), (0.0, 0.0, float(z)))
 
 
 def flange_half(solid, up, ribs):
@@ -583,7 +622,7 @@ def flange_half(solid, up, ribs):
     # The ends of the flange and its round corners; the long sides are between the bosses.
     plan = box(-FLANGE_X, FLANGE_X, -FLANGE_Z, FLANGE_Z, 16.0, 6)
     for piece in plan:
-        if abs(piece[0][1][1]) == 1 and piece[0][1] == piece[-1][1]:
+        if len(piece) == 2 and abs(piece[0][1][1]) > 0.5:
             continue
         rows = [[((p[0], 0.0, p[1]), (n[0], 0.0, n[1])) for p, n in piece]]
         for inset, below, side, rise in lip:
@@ -606,78 +645,12 @@ def flange_half(solid, up, ribs):
                 rows.append([((x(y), up * y, z * (FLANGE_Z - inset)), (0.0, up * rise, z * side)) for x in (left, right)])
             solid.grid(rows)
         for i, (x, r, bore) in enumerate(zip(SHAFT_X, BOSS, BORE)):
-            low, arcs = boss_foot(r), boss_arcs(r, ribs)
-            starts = [FLANGE_Z] + [FLANGE_Z - inset for inset, *_ in lip]
-            # Around the boss: columns of (angle, where along z it begins).
-            mantle = [list(zip(low, starts))]
-            off = FILLET[-1][1]
-            mantle += [[(a, SIDE + off) for a in part] for part in arcs]
-            if ribs:
-                mantle.insert(2, [(math.acos(p / r), q) for p, q in path(RIB[1:-1])])
-            mantle.append([(math.pi - a, s) for a, s in zip(low, starts)][::-1])
-            for columns in mantle:
-                rows = []
-                for end in (None, FACE - EDGE):
-                    rows.append(
-                        [
-                            (
-                                (x + r * math.cos(a), up * r * math.sin(a), z * (s if end is None else end)),
-                                (math.cos(a), up * math.sin(a), 0.0),
-                            )
-                            for a, s in columns
-                        ]
-                    )
-                solid.grid(rows)
-            for part in zip(*[boss_arcs(r + beyond, ribs) for beyond, *_ in FILLET]):
-                rows = []
-                for (beyond, off, m, n), angles in zip(FILLET, part):
-                    q = r + beyond
-                    rows.append(
-                        [
-                            ((x + q * math.cos(a), up * q * math.sin(a), z * (SIDE + off)), (m * math.cos(a), up * m * math.sin(a), z * n))
-                            for a in angles
-                        ]
-                    )
-                solid.grid(rows)
-            around = [0.0] + [a for columns in mantle for a, _ in columns[1:]]
-            rows = []
-            for inset, below, side, rise in lip:
-                q = r - inset
-                rows.append(
-                    [
-                        (
-                            (x + q * math.cos(a), up * q * math.sin(a), z * (FACE - below)),
-                            (side * math.cos(a), up * side * math.sin(a), z * rise),
-                        )
-                        for a in around
-                    ]
-                )
-            solid.grid(rows)
-            inside = steps(0.0, math.pi, 20)
-            solid.grid(
-                [
-                    [((x + bore * math.cos(a), up * bore * math.sin(a), z * q), (-math.cos(a), -up * math.sin(a), 0.0)) for a in inside]
-                    for q in (SIDE - WALL, FACE)
-                ]
-            )
-            face = [[(x + q * math.cos(a), up * q * math.sin(a)) for a in angles] for q, angles in ((r - EDGE, around), (bore, inside))]
-            face = [face[0] + face[1][::-1]]
-            on, radius, angles = CAP_SCREWS[i]
-            for a in angles:
-                if math.sin(a) * up > 0:
-                    c = (x + on * math.cos(a), on * math.sin(a))
-                    face.append(solid.hole(c, radius, 8, level(z * (FACE - 14)), level(z * FACE)))
-                    solid.flat([circle(*c, radius, 8)], level(z * (FACE - 14)), (0.0, 0.0, float(z)))
-            solid.flat(face, level(z * FACE), (0.0, 0.0, float(z)))
+            boss_half(solid, i, up, z, ribs)
+            rim = [(r - inset, z * (FACE - below)) for inset, below, *_ in lip]
             below_loops.append(
-                [
-                    (x - r, z * FLANGE_Z),
-                    *[(x - r + inset, z * (FACE - below)) for inset, below, *_ in lip],
-                    *[(x + r - inset, z * (FACE - below)) for inset, below, *_ in lip[::-1]],
-                    (x + r, z * FLANGE_Z),
-                ]
+                [(x - p, q) for p, q in [(r, z * FLANGE_Z), *rim]] + [(x + p, q) for p, q in [*rim[::-1], (r, z * FLANGE_Z)]]
             )
-            below_loops.append([(x - bore, z * (SIDE - WALL)), (x - bore, z * FACE), (x + bore, z * FACE), (x + bore, z * (SIDE - WALL))])
+            below_loops.append([(x + p, z * q) for p, q in ((-bore, SIDE - WALL), (-bore, FACE), (bore, FACE), (bore, SIDE - WALL))])
             side = [(math.sqrt((r + beyond) ** 2 - FLANGE**2), z * (SIDE + off)) for beyond, off, *_ in FILLET]
             side.append((side[-1][0], z * (FLANGE_Z - EDGE)))
             top_loops.append([(x - p, q) for p, q in side] + [(x + p, q) for p, q in reversed(side)])
@@ -1018,7 +991,7 @@ class Bearing:
 def shaft(corners, count=48, keyway=None):
     """From (radius, z) along the outside.
 
-    `keyway`: radius and limits of its cylinder, limits of the slot, its width and the height of its bottom. It has round ends and points to +y.
+    `keyway`: radius and limits of its cylinder, limits of the slot, its width and the height of its bottom. The slot points to +y.
     """
     solid = Solid()
     pieces = outline(corners, False, 2)
