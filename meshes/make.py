@@ -946,7 +946,7 @@ class Bearing:
         self.bore, self.outside, self.width, self.ball, self.balls = bore, outside, width, ball_radius, balls
         self.pitch = (bore + outside) / 2
         self.groove = 1.07 * ball_radius
-        self.lands = (self.pitch - 0.55 * ball_radius, self.pitch + 0.55 * ball_radius)
+        self.lands = (round(self.pitch - 0.55 * ball_radius, 1), round(self.pitch + 0.55 * ball_radius, 1))
 
     def race(self, outer):
         half = self.width / 2
