@@ -945,7 +945,7 @@ class Bearing:
     def __init__(self, bore, outside, width, ball_radius, balls):
         self.bore, self.outside, self.width, self.ball, self.balls = bore, outside, width, ball_radius, balls
         self.pitch = (bore + outside) / 2
-        self.groove = 1.07 * ball_radius
+        self.groove = round(1.07 * ball_radius, 2)
         self.lands = (round(self.pitch - 0.55 * ball_radius, 1), round(self.pitch + 0.55 * ball_radius, 1))
 
     def race(self, outer):
