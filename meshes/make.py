@@ -178,13 +178,13 @@ def bridged(outer, holes):
             for a, b in edges:
                 if p in (a, b) or q in (a, b):
                     continue
-                if side_of(p, q, a) * side_of(p, q, b) <= 0 and side_of(a, b, p) * side_of(a, b, q) <= 0:
+                if side_of(p, q, a) * side_of(p, q, b) < 1e-6 and side_of(a, b, p) * side_of(a, b, q) < 1e-6:
                     return False
             # The way in must lie in the corner: a corner that bridges meet in is there more than once.
             a, b = loop[i - 1], loop[(i + 1) % len(loop)]
-            if side_of(a, q, b) > 0:
-                return side_of(a, q, p) > 0 and side_of(q, b, p) > 0
-            return side_of(a, q, p) > 0 or side_of(q, b, p) > 0
+            if side_of(a, q, b) > -1e-6:
+                return side_of(a, q, p) > 1e-6 and side_of(q, b, p) > 1e-6
+            return side_of(a, q, p) > 1e-6 or side_of(q, b, p) > 1e-6
 
         i = next(i for i in sorted(range(len(loop)), key=lambda i: round(math.dist(loop[i], p), 6)) if seen(i))
         loop = loop[: i + 1] + hole[start:] + hole[: start + 1] + loop[i:]
@@ -205,7 +205,7 @@ def ears(loop):
             p = loop[j]
             if p not in (a, b, c) and side_of(a, b, p) >= -1e-9 and side_of(b, c, p) >= -1e-9 and side_of(c, a, p) >= -1e-9:
                 return None
-        return round(math.dist(a, c), 6)
+        return round(math.dist(a, c), 5)
 
     cuts = {i: cut(i) for i in after}
     triangles = []
