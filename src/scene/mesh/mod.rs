@@ -9,6 +9,8 @@
 mod assembly;
 mod build;
 mod raw;
+mod triangulate;
 
 pub use assembly::{Assembly, MeshMaterial, Part, Shape, pack_hull, pack_normal, unpack_hull, unpack_normal};
 pub use raw::{RawMesh, RawNormals, RawPart, RawShape};
+pub use triangulate::Triangulator;

@@ -111,7 +111,9 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<RawMesh, Sce
                 facet.finish(import, &mut solid);
                 facet.line = line;
             }
-            Keyword::Normal => (0..3).for_each(|_| drop(words.take_number())),
+            Keyword::Normal => (0..3).for_each(|_| {
+                words.take_number();
+            }),
             Keyword::Outer | Keyword::Loop => {}
             Keyword::Vertex => {
                 let mut read = || words.take_number();
