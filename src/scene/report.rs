@@ -66,6 +66,10 @@ note_kinds! {
     FaceOutOfRange => "face" / "faces": "left out: a vertex that the file does not have",
     /// A face of no, one or two vertices.
     ShortFace => "face" / "faces": "left out: fewer than three vertices",
+    /// A normal that the file does not have, or that is no number.
+    NoNormal => "face" / "faces": "with normals that the file does not have: found anew",
+    /// A vertex colour that is no number.
+    NoColor => "vertex" / "vertices": "with a colour that is no number, drawn white",
     /// A polygon that no way of cutting covers.
     CrossedPolygon => "polygon" / "polygons": "crossing itself or without area: cut as well as it can be",
     /// A word or line of a mesh file that says nothing to this reader.
@@ -76,6 +80,12 @@ note_kinds! {
     TrailingBytes => "byte" / "bytes": "at the end not read",
     /// A mesh file that ends inside something.
     MeshCut => "place" / "places": "where the file ends too early: what is whole is drawn",
+    /// A file of materials that was not read.
+    MaterialFile => "material file" / "material files": "not read",
+    /// A material that parts name and no file describes.
+    UnknownMaterial => "material" / "materials": "that no file describes, drawn in grey",
+    /// A picture on a surface.
+    PictureNotDrawn => "picture" / "pictures": "on surfaces not drawn: plain colours are",
 }
 
 /// One thing that was mended, guessed or skipped.

@@ -4,6 +4,7 @@ mod conect;
 mod lines;
 mod models;
 mod number;
+mod obj;
 mod pdb;
 mod side_file;
 mod sniff;
@@ -91,6 +92,7 @@ pub(super) fn read(
     let content = match sniff(file, bytes) {
         Format::Pdb => pdb::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Xyz => xyz::read(&mut import, bytes).map(Content::Molecule)?,
+        Format::Obj => obj::read(&mut import, bytes).map(Content::Mesh)?,
         Format::Stl => stl::read(&mut import, bytes).map(Content::Mesh)?,
         Format::Foreign(what) => {
             return unsupported(format!("is {what}, not a molecule in PDB or XYZ format; {}", way_out(what)));

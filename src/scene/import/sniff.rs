@@ -1,7 +1,7 @@
 //! Finds out what kind of file some bytes are, by content first and by extension second.
 
 use super::lines::Lines;
-use super::stl;
+use super::{obj, stl};
 use std::path::Path;
 
 /// What a file turned out to be.
@@ -11,6 +11,8 @@ pub enum Format {
     Pdb,
     /// A count, a comment, and lines of symbol x y z.
     Xyz,
+    /// Wavefront OBJ.
+    Obj,
     /// Stereolithography, ASCII or binary.
     Stl,
     /// Another known kind: what it is, with its article.
@@ -57,7 +59,6 @@ const FOREIGN_EXTENSIONS: &[(&str, &str)] = &[
     ("mol2", "a MOL2 file"),
     ("cube", "a Gaussian cube file"),
     ("gro", "a GROMACS file"),
-    ("obj", "an OBJ mesh"),
     ("ply", "a PLY mesh"),
     ("off", "an OFF mesh"),
     ("3mf", "a 3MF mesh"),
@@ -81,7 +82,7 @@ pub fn sniff(name: &str, bytes: &[u8]) -> Format {
         .extension()
         .map(|extension| extension.to_string_lossy().to_ascii_lowercase())
         .unwrap_or_default();
-    if let Some(format) = triangles(bytes) {
+    if let Some(format) = triangles(bytes, head, &extension) {
         return format;
     }
     if let Some((_, what)) = MAGIC.iter().find(|(magic, _)| head.starts_with(magic) || start.starts_with(magic)) {
@@ -91,8 +92,15 @@ pub fn sniff(name: &str, bytes: &[u8]) -> Format {
 }
 
 /// Meshes that begin or end as nothing else does.
-fn triangles(bytes: &[u8]) -> Option<Format> {
-    (stl::is_exact_binary(bytes) || stl::begins_as_text(bytes)).then_some(Format::Stl)
+fn triangles(bytes: &[u8], head: &[u8], extension: &str) -> Option<Format> {
+    let is_utf16 = head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff");
+    if stl::is_exact_binary(bytes) || stl::begins_as_text(bytes) {
+        Some(Format::Stl)
+    } else if obj::is_obj(head) || extension == "obj" && is_utf16 {
+        Some(Format::Obj)
+    } else {
+        None
+    }
 }
 
 /// What the first lines tell, if they do.
@@ -156,6 +164,7 @@ fn by_extension(extension: &str) -> Format {
         "pdb" | "ent" | "pdb1" | "brk" | "pdbqt" => Format::Pdb,
         "xyz" => Format::Xyz,
         "stl" => Format::Stl,
+        "obj" => Format::Obj,
         _ => FOREIGN_EXTENSIONS
             .iter()
             .find(|(foreign, _)| *foreign == extension)
