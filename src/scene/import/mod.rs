@@ -1,11 +1,13 @@
 //! Importers: bytes of a file to a molecule or a mesh. One file per format.
 
 mod conect;
+mod faces;
 mod lines;
 mod models;
 mod number;
 mod obj;
 mod pdb;
+mod ply;
 mod side_file;
 mod sniff;
 mod stl;
@@ -93,6 +95,7 @@ pub(super) fn read(
         Format::Pdb => pdb::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Xyz => xyz::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Obj => obj::read(&mut import, bytes).map(Content::Mesh)?,
+        Format::Ply => ply::read(&mut import, bytes).map(Content::Mesh)?,
         Format::Stl => stl::read(&mut import, bytes).map(Content::Mesh)?,
         Format::Foreign(what) => {
             return unsupported(format!("is {what}, not a molecule in PDB or XYZ format; {}", way_out(what)));

@@ -1,7 +1,7 @@
 //! Finds out what kind of file some bytes are, by content first and by extension second.
 
 use super::lines::Lines;
-use super::{obj, stl};
+use super::{obj, ply, stl};
 use std::path::Path;
 
 /// What a file turned out to be.
@@ -13,6 +13,8 @@ pub enum Format {
     Xyz,
     /// Wavefront OBJ.
     Obj,
+    /// Polygon file format, text or binary.
+    Ply,
     /// Stereolithography, ASCII or binary.
     Stl,
     /// Another known kind: what it is, with its article.
@@ -40,7 +42,6 @@ const MAGIC: &[(&[u8], &str)] = &[
     (b"\xff\xfe", "a text in UTF-16"),
     (b"\xfe\xff", "a text in UTF-16"),
     (b"version https://git-lfs", "a Git LFS pointer instead of the file itself"),
-    (b"ply", "a PLY mesh"),
     (b"OFF", "an OFF mesh"),
     (b"@<TRIPOS>", "a MOL2 file"),
     (b"<", "a web page or XML file"),
@@ -59,7 +60,6 @@ const FOREIGN_EXTENSIONS: &[(&str, &str)] = &[
     ("mol2", "a MOL2 file"),
     ("cube", "a Gaussian cube file"),
     ("gro", "a GROMACS file"),
-    ("ply", "a PLY mesh"),
     ("off", "an OFF mesh"),
     ("3mf", "a 3MF mesh"),
     ("gltf", "a glTF mesh"),
@@ -96,6 +96,8 @@ fn triangles(bytes: &[u8], head: &[u8], extension: &str) -> Option<Format> {
     let is_utf16 = head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff");
     if stl::is_exact_binary(bytes) || stl::begins_as_text(bytes) {
         Some(Format::Stl)
+    } else if ply::begins(head) {
+        Some(Format::Ply)
     } else if obj::is_obj(head) || extension == "obj" && is_utf16 {
         Some(Format::Obj)
     } else {
@@ -164,6 +166,7 @@ fn by_extension(extension: &str) -> Format {
         "pdb" | "ent" | "pdb1" | "brk" | "pdbqt" => Format::Pdb,
         "xyz" => Format::Xyz,
         "stl" => Format::Stl,
+        "ply" => Format::Ply,
         "obj" => Format::Obj,
         _ => FOREIGN_EXTENSIONS
             .iter()
