@@ -43,23 +43,28 @@ impl Faces {
         self.positions.push(if is_place { position } else { DVec3::ZERO });
     }
 
+    /// Vertices so far.
+    pub(super) fn num_positions(&self) -> usize {
+        self.positions.len()
+    }
+
     /// Adds a face; `indices` are whole numbers from 0, or wrong.
-    pub(super) fn add(&mut self, report: &mut Report, indices: &[f64], color: Option<[u8; 3]>) {
+    pub(super) fn add(&mut self, report: &mut Report, line: Option<u32>, indices: &[f64], color: Option<[u8; 3]>) {
         self.num_faces += 1;
         let number = self.num_faces;
         let text = || format!("face {number}");
         if indices.len() < 3 {
-            return report.note(NoteKind::ShortFace, None, text);
+            return report.note(NoteKind::ShortFace, line, text);
         }
         self.polygon.clear();
         for &index in indices {
             if !(index >= 0.0 && index < self.positions.len() as f64 && index.fract() == 0.0) {
-                return report.note(NoteKind::FaceOutOfRange, None, text);
+                return report.note(NoteKind::FaceOutOfRange, line, text);
             }
             self.polygon.push(index as u32);
         }
         if !self.nowhere.is_empty() && self.polygon.iter().any(|index| self.nowhere.binary_search(index).is_ok()) {
-            return report.note(NoteKind::FaceNowhere, None, text);
+            return report.note(NoteKind::FaceNowhere, line, text);
         }
         if let &[a, b, c] = self.polygon.as_slice() {
             self.triangles.push([a, b, c]);
@@ -68,7 +73,7 @@ impl Faces {
             self.corners.extend(self.polygon.iter().map(|&index| self.positions[index as usize]));
             self.cut.clear();
             if !self.triangulator.cut(&self.corners, &mut self.cut) {
-                report.note(NoteKind::CrossedPolygon, None, text);
+                report.note(NoteKind::CrossedPolygon, line, text);
             }
             let polygon = &self.polygon;
             self.triangles.extend(self.cut.iter().map(|triangle| triangle.map(|corner| polygon[corner as usize])));
@@ -137,11 +142,11 @@ mod tests {
         for (x, y) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (f64::NAN, 0.0)] {
             faces.push(DVec3::new(x, y, 5.0));
         }
-        faces.add(&mut report, &[0.0, 1.0, 2.0], None);
-        faces.add(&mut report, &[0.0, 1.0, 2.0, 3.0], Some([9, 0, 0]));
-        faces.add(&mut report, &[0.0, 1.0, 4.0], Some([9, 0, 0]));
-        faces.add(&mut report, &[0.0, 2.0, 3.0], None);
-        faces.add(&mut report, &[0.0, 1.5, 3.0], None);
+        faces.add(&mut report, None, &[0.0, 1.0, 2.0], None);
+        faces.add(&mut report, None, &[0.0, 1.0, 2.0, 3.0], Some([9, 0, 0]));
+        faces.add(&mut report, None, &[0.0, 1.0, 4.0], Some([9, 0, 0]));
+        faces.add(&mut report, None, &[0.0, 2.0, 3.0], None);
+        faces.add(&mut report, None, &[0.0, 1.5, 3.0], None);
         let normals: Vec<Vec3> = (0..5).map(|i| Vec3::splat(i as f32)).collect();
         let mesh = faces.finish(normals, Vec::new());
         let shape = &mesh.shapes[0];

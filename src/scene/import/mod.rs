@@ -6,6 +6,7 @@ mod lines;
 mod models;
 mod number;
 mod obj;
+mod off;
 mod pdb;
 mod ply;
 mod side_file;
@@ -95,6 +96,7 @@ pub(super) fn read(
         Format::Pdb => pdb::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Xyz => xyz::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Obj => obj::read(&mut import, bytes).map(Content::Mesh)?,
+        Format::Off => off::read(&mut import, bytes).map(Content::Mesh)?,
         Format::Ply => ply::read(&mut import, bytes).map(Content::Mesh)?,
         Format::Stl => stl::read(&mut import, bytes).map(Content::Mesh)?,
         Format::Foreign(what) => {

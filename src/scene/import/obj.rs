@@ -5,8 +5,10 @@
 //! makes of it: all vertices, then all faces, each sound, and a number for each run of one object, group and material.
 //! Texture coordinates are left out, since nothing is drawn from them.
 
+mod checked;
 mod clean;
 mod material;
+mod names;
 mod statement;
 
 use std::collections::HashMap;
@@ -14,7 +16,8 @@ use std::collections::HashMap;
 use glam::{DAffine3, DVec3};
 use tobj::{LoadOptions, Mesh};
 
-use self::clean::{Cleaned, Run};
+use self::clean::Cleaned;
+use self::names::Run;
 use super::{Import, SceneError};
 use crate::scene::mesh::{RawMesh, RawNormals, RawPart, RawShape, Triangulator};
 use crate::scene::report::NoteKind;

@@ -232,7 +232,7 @@ impl Reader {
             if is_strips {
                 self.strips(import, &list);
             } else {
-                self.faces.add(&mut import.report, &list, has_colors.then_some(color));
+                self.faces.add(&mut import.report, None, &list, has_colors.then_some(color));
             }
         }
         Ok(Ok(()))
@@ -245,7 +245,7 @@ impl Reader {
                 // Strips turn the other way at each triangle; those of two equal corners only lead on.
                 if a != b && b != c && a != c {
                     let triangle = if i % 2 == 0 { [a, b, c] } else { [b, a, c] };
-                    self.faces.add(&mut import.report, &triangle, None);
+                    self.faces.add(&mut import.report, None, &triangle, None);
                 }
             }
         }

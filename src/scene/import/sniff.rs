@@ -1,7 +1,7 @@
 //! Finds out what kind of file some bytes are, by content first and by extension second.
 
 use super::lines::Lines;
-use super::{obj, ply, stl};
+use super::{obj, off, ply, stl};
 use std::path::Path;
 
 /// What a file turned out to be.
@@ -13,6 +13,8 @@ pub enum Format {
     Xyz,
     /// Wavefront OBJ.
     Obj,
+    /// Object file format of Geomview.
+    Off,
     /// Polygon file format, text or binary.
     Ply,
     /// Stereolithography, ASCII or binary.
@@ -42,7 +44,6 @@ const MAGIC: &[(&[u8], &str)] = &[
     (b"\xff\xfe", "a text in UTF-16"),
     (b"\xfe\xff", "a text in UTF-16"),
     (b"version https://git-lfs", "a Git LFS pointer instead of the file itself"),
-    (b"OFF", "an OFF mesh"),
     (b"@<TRIPOS>", "a MOL2 file"),
     (b"<", "a web page or XML file"),
     (b"{", "a JSON file"),
@@ -60,7 +61,6 @@ const FOREIGN_EXTENSIONS: &[(&str, &str)] = &[
     ("mol2", "a MOL2 file"),
     ("cube", "a Gaussian cube file"),
     ("gro", "a GROMACS file"),
-    ("off", "an OFF mesh"),
     ("3mf", "a 3MF mesh"),
     ("gltf", "a glTF mesh"),
     ("glb", "a glTF mesh"),
@@ -98,6 +98,10 @@ fn triangles(bytes: &[u8], head: &[u8], extension: &str) -> Option<Format> {
         Some(Format::Stl)
     } else if ply::begins(head) {
         Some(Format::Ply)
+    } else if off::begins(head) || extension == "off" && head.trim_ascii_start().first().is_some_and(u8::is_ascii_digit)
+    {
+        // Without its keyword it begins with a count, as an XYZ file does.
+        Some(Format::Off)
     } else if obj::is_obj(head) || extension == "obj" && is_utf16 {
         Some(Format::Obj)
     } else {
@@ -166,6 +170,7 @@ fn by_extension(extension: &str) -> Format {
         "pdb" | "ent" | "pdb1" | "brk" | "pdbqt" => Format::Pdb,
         "xyz" => Format::Xyz,
         "stl" => Format::Stl,
+        "off" => Format::Off,
         "ply" => Format::Ply,
         "obj" => Format::Obj,
         _ => FOREIGN_EXTENSIONS

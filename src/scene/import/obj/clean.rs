@@ -3,61 +3,13 @@
 use std::collections::HashMap;
 use std::io::{self, BufRead, Read, Write};
 
+use super::checked::Checked;
+use super::names::{Names, Numbers, Run};
 use super::statement::{Statements, keyword, name, words};
 use crate::scene::import::lines::quote;
 use crate::scene::import::number::float;
 use crate::scene::import::{Import, SceneError};
 use crate::scene::report::NoteKind;
-
-/// Faces of one object, group and material: a part.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) struct Run {
-    /// Index into [`Names::texts`].
-    object: u32,
-    /// Index into [`Names::texts`].
-    group: u32,
-    /// Index into [`Names::materials`].
-    pub(super) material: Option<u32>,
-    /// Whether all corners have normals: `tobj` answers one list for a run, whole or not.
-    pub(super) has_normals: bool,
-}
-
-/// What the file names.
-#[derive(Default)]
-pub(super) struct Names {
-    /// By their numbers, which are the names of `tobj`'s models.
-    pub(super) runs: Vec<Run>,
-    /// Materials in the order in which faces use them.
-    pub(super) materials: Vec<String>,
-    /// Files of materials, with the lines that name them.
-    pub(super) libraries: Vec<(u32, String)>,
-    texts: Vec<String>,
-}
-
-impl Names {
-    /// Name and path of a part.
-    pub(super) fn label(&self, run: &Run) -> (String, String) {
-        let text = |number: u32| self.texts.get(number as usize).map_or("", String::as_str);
-        let (object, group) = (text(run.object), text(run.group));
-        match (object, group) {
-            (only, "") | ("", only) => (only.to_owned(), only.to_owned()),
-            _ => (group.to_owned(), format!("{object}/{group}")),
-        }
-    }
-}
-
-/// Numbers for texts, each once.
-#[derive(Default)]
-struct Numbers(HashMap<String, u32>);
-
-impl Numbers {
-    fn of(&mut self, text: String, texts: &mut Vec<String>) -> u32 {
-        *self.0.entry(text).or_insert_with_key(|text| {
-            texts.push(text.clone());
-            texts.len() as u32 - 1
-        })
-    }
-}
 
 /// What is being handed out.
 #[derive(PartialEq)]
@@ -89,36 +41,6 @@ pub(super) struct Cleaned<'a, 'b, 'c> {
     now: Run,
     /// Number of the run that faces were handed out for last.
     last_run: Option<u32>,
-}
-
-/// Vertices or normals: how many there are, and which of them are no numbers.
-#[derive(Default)]
-struct Checked {
-    count: u32,
-    /// How many came before the face that is looked at.
-    before: u32,
-    /// Numbers from 0, ascending.
-    bad: Vec<u32>,
-}
-
-impl Checked {
-    fn push(&mut self, is_good: bool) {
-        if !is_good {
-            self.bad.push(self.count);
-        }
-        self.count = self.count.saturating_add(1);
-    }
-
-    /// The number, from 0, that an index means; none if there is no such thing.
-    fn resolve(&self, text: &[u8]) -> Option<u32> {
-        let index: i64 = std::str::from_utf8(text).ok()?.parse().ok()?;
-        let number = if index < 0 { i64::from(self.before).checked_add(index)? } else { index - 1 };
-        u32::try_from(number).ok().filter(|&number| number < self.count)
-    }
-
-    fn is_bad(&self, number: u32) -> bool {
-        self.bad.binary_search(&number).is_ok()
-    }
 }
 
 /// Why a face is left out.

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::Vec3;
 
-use super::clean::Names;
+use super::names::Names;
 use super::statement::{Statements, decoded, keyword, name, words};
 use crate::scene::import::Import;
 use crate::scene::import::lines::quote;
