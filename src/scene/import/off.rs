@@ -57,7 +57,10 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<RawMesh, Sce
     let mut next = || lines.next().inspect(|(number, _)| last.set(*number));
     let Some((mut number, mut line)) = next() else { return Err(import.no_triangles()) };
     let mut first = words(line).peekable();
-    let keyword = first.peek().and_then(|word| Keyword::parse(word)).inspect(|_| drop(first.next()));
+    let keyword = first.peek().and_then(|word| Keyword::parse(word));
+    if keyword.is_some() {
+        first.next();
+    }
     if first.peek() == Some(&&b"BINARY"[..]) {
         let what = "is a binary OFF file, which is not read; save it as text, or as PLY".to_string();
         return Err(SceneError::Unsupported { file: import.file.to_string(), what });
@@ -105,7 +108,7 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<RawMesh, Sce
         let length = numbers.next().unwrap_or(f64::NAN);
         indices.clear();
         indices.extend(numbers.by_ref().take(if length >= 0.0 { length as usize } else { 0 }));
-        if (indices.len() as f64) < length || !(length >= 0.0) {
+        if length.is_nan() || length != indices.len() as f64 {
             import.report.note(NoteKind::ShortFace, number, || quote(line));
             continue;
         }
