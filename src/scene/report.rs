@@ -91,6 +91,10 @@ note_kinds! {
     FaceOutOfRange => "face" / "faces": "left out: a vertex that the file does not have",
     /// A face of no, one or two vertices.
     ShortFace => "face" / "faces": "left out: fewer than three vertices",
+    /// A normal that the file does not have, or that is no number.
+    NoNormal => "face" / "faces": "with normals that the file does not have: found anew",
+    /// A vertex colour that is no number.
+    NoColor => "vertex" / "vertices": "with a colour that is no number, drawn white",
     /// A polygon that no way of cutting covers.
     CrossedPolygon => "polygon" / "polygons": "crossing itself or without area: cut as well as it can be",
     /// A word or line of a mesh file that says nothing to this reader.
@@ -117,6 +121,12 @@ note_kinds! {
     InsideOut => "closed surface" / "closed surfaces": "inside out, turned",
     /// Normals that look inwards.
     NormalsDropped => "normal" / "normals": "of the file not used: most look to the other side than their triangles",
+    /// A file of materials that was not read.
+    MaterialFile => "material file" / "material files": "not read",
+    /// A material that parts name and no file describes.
+    UnknownMaterial => "material" / "materials": "that no file describes, drawn in grey",
+    /// A picture on a surface.
+    PictureNotDrawn => "picture" / "pictures": "on surfaces not drawn: plain colours are",
 }
 
 /// One thing that was mended, guessed or skipped.

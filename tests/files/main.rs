@@ -3,6 +3,7 @@
 mod scene_data;
 mod scene_mutations;
 mod scene_shipped;
+mod scene_tri;
 mod style_files;
 mod style_manual;
 mod style_schema;

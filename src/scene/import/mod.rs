@@ -2,11 +2,15 @@
 
 mod compact;
 mod conect;
+mod faces;
 mod gltf;
 mod lines;
 mod models;
 mod number;
+mod obj;
+mod off;
 mod pdb;
+mod ply;
 mod side_file;
 mod sniff;
 mod stl;
@@ -99,6 +103,9 @@ pub(super) fn read(
     let content = match sniff(file, bytes) {
         Format::Pdb => pdb::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Xyz => xyz::read(&mut import, bytes).map(Content::Molecule)?,
+        Format::Obj => obj::read(&mut import, bytes).map(Content::Mesh)?,
+        Format::Off => off::read(&mut import, bytes).map(Content::Mesh)?,
+        Format::Ply => ply::read(&mut import, bytes).map(Content::Mesh)?,
         Format::Stl => stl::read(&mut import, bytes).map(Content::Mesh)?,
         Format::Gltf => gltf::read(&mut import, bytes).map(Content::Mesh)?,
         Format::Foreign(what) => {

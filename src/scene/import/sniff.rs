@@ -1,7 +1,7 @@
 //! Finds out what kind of file some bytes are, by content first and by extension second.
 
 use super::lines::Lines;
-use super::stl;
+use super::{obj, off, ply, stl};
 use std::path::Path;
 
 /// What a file turned out to be.
@@ -11,6 +11,12 @@ pub enum Format {
     Pdb,
     /// A count, a comment, and lines of symbol x y z.
     Xyz,
+    /// Wavefront OBJ.
+    Obj,
+    /// Object file format of Geomview.
+    Off,
+    /// Polygon file format, text or binary.
+    Ply,
     /// Stereolithography, ASCII or binary.
     Stl,
     /// glTF 2.0: JSON, or a GLB.
@@ -39,8 +45,6 @@ const MAGIC: &[(&[u8], &str)] = &[
     (b"\xff\xfe", "a text in UTF-16"),
     (b"\xfe\xff", "a text in UTF-16"),
     (b"version https://git-lfs", "a Git LFS pointer instead of the file itself"),
-    (b"ply", "a PLY mesh"),
-    (b"OFF", "an OFF mesh"),
     (b"@<TRIPOS>", "a MOL2 file"),
     (b"<", "a web page or XML file"),
     (b"{", "a JSON file"),
@@ -58,9 +62,6 @@ const FOREIGN_EXTENSIONS: &[(&str, &str)] = &[
     ("mol2", "a MOL2 file"),
     ("cube", "a Gaussian cube file"),
     ("gro", "a GROMACS file"),
-    ("obj", "an OBJ mesh"),
-    ("ply", "a PLY mesh"),
-    ("off", "an OFF mesh"),
     ("3mf", "a 3MF mesh"),
 ];
 
@@ -80,7 +81,7 @@ pub fn sniff(name: &str, bytes: &[u8]) -> Format {
         .extension()
         .map(|extension| extension.to_string_lossy().to_ascii_lowercase())
         .unwrap_or_default();
-    if let Some(format) = triangles(bytes) {
+    if let Some(format) = triangles(bytes, head, &extension) {
         return format;
     }
     let has = |word: &[u8]| memchr::memmem::find(head, word).is_some();
@@ -95,8 +96,21 @@ pub fn sniff(name: &str, bytes: &[u8]) -> Format {
 }
 
 /// Meshes that begin or end as nothing else does.
-fn triangles(bytes: &[u8]) -> Option<Format> {
-    (stl::is_exact_binary(bytes) || stl::begins_as_text(bytes)).then_some(Format::Stl)
+fn triangles(bytes: &[u8], head: &[u8], extension: &str) -> Option<Format> {
+    let is_utf16 = head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff");
+    if stl::is_exact_binary(bytes) || stl::begins_as_text(bytes) {
+        Some(Format::Stl)
+    } else if ply::begins(head) {
+        Some(Format::Ply)
+    } else if off::begins(head) || extension == "off" && head.trim_ascii_start().first().is_some_and(u8::is_ascii_digit)
+    {
+        // Without its keyword it begins with a count, as an XYZ file does.
+        Some(Format::Off)
+    } else if obj::is_obj(head) || extension == "obj" && is_utf16 {
+        Some(Format::Obj)
+    } else {
+        None
+    }
 }
 
 /// What the first lines tell, if they do.
@@ -161,6 +175,9 @@ fn by_extension(extension: &str) -> Format {
         "xyz" => Format::Xyz,
         "stl" => Format::Stl,
         "gltf" | "glb" => Format::Gltf,
+        "off" => Format::Off,
+        "ply" => Format::Ply,
+        "obj" => Format::Obj,
         _ => FOREIGN_EXTENSIONS
             .iter()
             .find(|(foreign, _)| *foreign == extension)

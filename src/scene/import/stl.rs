@@ -23,7 +23,7 @@ const FACET: usize = 50;
 pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<RawMesh, SceneError> {
     let mesh =
         if is_exact_binary(bytes) || !is_text(bytes) { binary(import, bytes)? } else { ascii::read(import, bytes)? };
-    if mesh.parts.is_empty() { Err(SceneError::NoTriangles { file: import.file.to_string() }) } else { Ok(mesh) }
+    if mesh.parts.is_empty() { Err(import.no_triangles()) } else { Ok(mesh) }
 }
 
 /// Whether a file can only be binary: its length is that of its header and as many facets as the header says.

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::lines::quote;
 use super::number::float;
 use super::{Import, SceneError};
+use crate::scene::report::NoteKind;
 
 /// The largest coordinate that is read: products of three still fit double precision.
 pub(super) const LARGEST: f64 = 1e100;
@@ -32,6 +33,30 @@ impl Import<'_> {
             }
         }
         Ok(Some(place))
+    }
+
+    /// The error of a file without a triangle: why, as far as faces were left out.
+    pub(super) fn no_triangles(&self) -> SceneError {
+        let file = self.file.to_string();
+        let kinds = [
+            (NoteKind::FaceOutOfRange, "the vertices of this one are not there"),
+            (NoteKind::FaceNowhere, "a coordinate of this one is no number"),
+            (NoteKind::ShortFace, "this one has fewer than three vertices"),
+        ];
+        let entries = self.report.entries.iter();
+        let first =
+            entries.filter_map(|note| Some((note, kinds.iter().find(|(kind, _)| *kind == note.kind)?.1))).next();
+        let count: u64 = kinds.iter().map(|&(kind, _)| u64::from(self.report.count(kind))).sum();
+        match first {
+            None => SceneError::NoTriangles { file },
+            Some((note, why)) => {
+                let what = format!("none of {count} faces can be drawn: {why}; export the model again");
+                match note.line {
+                    Some(line) => SceneError::Malformed { file, line, what },
+                    None => SceneError::Unsupported { file, what: format!("{}: {what}", note.text) },
+                }
+            }
+        }
     }
 }
 

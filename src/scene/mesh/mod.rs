@@ -17,9 +17,11 @@ mod place;
 mod raw;
 #[cfg(test)]
 mod solids;
+mod triangulate;
 mod vertices;
 mod weld;
 mod winding;
 
 pub use assembly::{Assembly, MeshMaterial, Part, Shape, pack_hull, pack_normal, unpack_hull, unpack_normal};
 pub use raw::{RawMesh, RawNormals, RawPart, RawShape};
+pub use triangulate::Triangulator;

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::Solid;
 use crate::scene::import::lines::{Lines, quote};
 use crate::scene::import::{Import, SceneError};
-use crate::scene::mesh::RawMesh;
+use crate::scene::mesh::{RawMesh, Triangulator};
 use crate::scene::report::NoteKind;
 
 /// Words with their lines; spaces of any kind and number lie between.
@@ -111,7 +111,14 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<RawMesh, Sce
                 facet.finish(import, &mut solid);
                 facet.line = line;
             }
-            Keyword::Normal => (0..3).for_each(|_| drop(words.take_number())),
+            Keyword::Normal => (0..3).for_each(|_| {
+                words.take_number();
+            }),
+            // A new loop is a new facet, also where the word for it is misspelt.
+            Keyword::Outer | Keyword::Loop if facet.is_closed => {
+                facet.finish(import, &mut solid);
+                facet.line = line;
+            }
             Keyword::Outer | Keyword::Loop => {}
             Keyword::Vertex => {
                 let mut read = || words.take_number();
@@ -121,11 +128,7 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<RawMesh, Sce
                     facet.line = line;
                 }
                 match import.vertex(line, texts)? {
-                    Some(place) if facet.corners.len() < 3 => facet.corners.push(place),
-                    Some(_) => {
-                        let what = "a facet of more than three vertices; export the model as triangles".to_string();
-                        return Err(import.malformed(line, what));
-                    }
+                    Some(place) => facet.corners.push(place),
                     None if facet.is_nowhere => {}
                     None => (facet.is_nowhere, facet.what) = (true, quote(&texts.join(&b' '))),
                 }
@@ -161,10 +164,17 @@ impl Facet {
         }
         if is_nowhere {
             import.report.note(NoteKind::FaceNowhere, line, || what);
-        } else if let Ok(corners) = corners.try_into() {
-            solid.push(corners);
-        } else {
+        } else if corners.len() < 3 {
             import.report.note(NoteKind::ShortFace, line, String::new);
+        } else {
+            // Some programs write polygons.
+            let mut triangles = Vec::new();
+            if !Triangulator::default().cut(&corners, &mut triangles) {
+                import.report.note(NoteKind::CrossedPolygon, line, String::new);
+            }
+            for triangle in triangles {
+                solid.push(triangle.map(|corner| corners[corner as usize]));
+            }
         }
     }
 }

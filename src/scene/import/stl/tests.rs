@@ -94,6 +94,10 @@ fn misspelt_words_and_cut_files_keep_what_is_whole() {
     let (mesh, report) = loaded(TWO_SOLIDS.replacen("vertex", "vertx", 1).as_bytes());
     assert_eq!(mesh.parts.len(), 1);
     assert_eq!((report.count(NoteKind::UnknownWord), report.count(NoteKind::ShortFace)), (1, 1));
+    let (mesh, report) = loaded(TWO_SOLIDS.replace(" facet", " fact").replace("endfacet", "endfact").as_bytes());
+    assert_eq!((mesh.shapes[1].triangles.len(), report.count(NoteKind::UnknownWord)), (2, 6));
+    let (mesh, report) = loaded(TWO_SOLIDS.replacen("endloop", "vertex -1 0.5 0\nendloop", 1).as_bytes());
+    assert_eq!((mesh.shapes[0].triangles.len(), report.count(NoteKind::CrossedPolygon)), (2, 0));
     let cut = TWO_SOLIDS.find("2 0 0").expect("there");
     let (mesh, report) = loaded(&TWO_SOLIDS.as_bytes()[..cut + 5]);
     assert_eq!((mesh.shapes[1].triangles.len(), report.count(NoteKind::MeshCut)), (1, 1));
