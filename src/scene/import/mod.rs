@@ -9,6 +9,7 @@ mod number;
 mod pdb;
 mod side_file;
 mod sniff;
+mod threemf;
 mod tree_path;
 mod xyz;
 
@@ -98,6 +99,7 @@ pub(super) fn read(
         Format::Pdb => pdb::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Xyz => xyz::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Gltf => gltf::read(&mut import, bytes).map(Content::Mesh)?,
+        Format::ThreeMf => threemf::read(&mut import, bytes).map(Content::Mesh)?,
         Format::Foreign(what) => {
             return unsupported(format!("is {what}, not a molecule in PDB or XYZ format; {}", way_out(what)));
         }
