@@ -59,10 +59,10 @@ note_kinds! {
     CountMended => "place" / "places": "where count or comment line and atoms disagree, mended",
     /// Text after the last atom that is neither an atom nor a frame.
     TrailingText => "line" / "lines": "after the atoms not read",
-    /// A triangle that names a vertex that is not there, or ends before its third.
-    TriangleToNowhere => "triangle" / "triangles": "left out: a vertex does not exist",
-    /// A triangle with a vertex at NaN or infinity.
-    TriangleNotFinite => "triangle" / "triangles": "left out: a coordinate is no finite number",
+    /// A triangle or polygon with a vertex at NaN or infinity.
+    FaceNowhere => "face" / "faces": "left out: a coordinate is no number",
+    /// A triangle or polygon that names a vertex that is not there, or ends before its last.
+    FaceOutOfRange => "face" / "faces": "left out: a vertex that the file does not have",
     /// Points or lines of a mesh file.
     NotTriangles => "set of points or lines" / "sets of points or lines": "left out: only triangles are drawn",
     /// Normals or colours that do not belong to the vertices.
@@ -83,6 +83,14 @@ note_kinds! {
     TextureNotDrawn => "texture" / "textures": "in the file, not drawn: surfaces have the colours of their materials",
     /// Animations, skins, morph targets.
     NotAnimated => "animation, skin or morph" / "animations, skins and morphs": "in the file, not followed: the mesh is drawn as it is saved",
+    /// Lengths of a file that were turned into millimetres.
+    UnitConverted => "unit" / "units": "of length converted to millimetres",
+    /// A unit that does not exist.
+    UnitUnknown => "unit" / "units": "of length unknown, taken as millimetres",
+    /// A colour with an alpha of zero.
+    InvisibleMended => "material" / "materials": "invisible by its alpha of 0, drawn solid",
+    /// A colour that cannot be read.
+    ColorUnknown => "colour" / "colours": "missing or unreadable, taken as white",
     /// Positions that single precision rounds visibly.
     CoarsePositions => "molecule" / "molecules": "so wide that positions are rounded",
     /// A face with a vertex that is NaN, infinite or no number.
@@ -141,11 +149,17 @@ pub struct Note {
 }
 
 /// All notes about one file.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Report {
     /// The first few notes of each kind, in the order of the file.
     pub entries: Vec<Note>,
     counts: BTreeMap<NoteKind, u32>,
+}
+
+impl Default for Report {
+    fn default() -> Self {
+        Self { entries: Vec::new(), counts: [0; NoteKind::ALL.len()] }
+    }
 }
 
 impl Report {

@@ -14,6 +14,7 @@ mod ply;
 mod side_file;
 mod sniff;
 mod stl;
+mod threemf;
 mod tree_path;
 mod vertex;
 mod xyz;
@@ -108,6 +109,7 @@ pub(super) fn read(
         Format::Ply => ply::read(&mut import, bytes).map(Content::Mesh)?,
         Format::Stl => stl::read(&mut import, bytes).map(Content::Mesh)?,
         Format::Gltf => gltf::read(&mut import, bytes).map(Content::Mesh)?,
+        Format::ThreeMf => threemf::read(&mut import, bytes).map(Content::Mesh)?,
         Format::Foreign(what) => {
             return unsupported(format!("is {what}, not a molecule in PDB or XYZ format; {}", way_out(what)));
         }

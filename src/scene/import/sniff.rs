@@ -21,6 +21,8 @@ pub enum Format {
     Stl,
     /// glTF 2.0: JSON, or a GLB.
     Gltf,
+    /// 3MF: a zip archive with a model in XML.
+    ThreeMf,
     /// Another known kind: what it is, with its article.
     Foreign(&'static str),
     /// Nothing that is known here.
@@ -63,6 +65,10 @@ const FOREIGN_EXTENSIONS: &[(&str, &str)] = &[
     ("cube", "a Gaussian cube file"),
     ("gro", "a GROMACS file"),
     ("3mf", "a 3MF mesh"),
+    ("obj", "an OBJ mesh"),
+    ("stl", "an STL mesh"),
+    ("ply", "a PLY mesh"),
+    ("off", "an OFF mesh"),
 ];
 
 /// Records that begin lines of PDB files and of nothing else that has them in its first lines.
@@ -88,6 +94,10 @@ pub fn sniff(name: &str, bytes: &[u8]) -> Format {
     let is_gltf_text = || extension == "gltf" || has(b"\"asset\"");
     if head.starts_with(b"glTF") || start.starts_with(b"{") && is_gltf_text() {
         return Format::Gltf;
+    }
+    // The names of entries stand before them, and other archives with models do not call them so.
+    if head.starts_with(b"PK\x03\x04") && (extension == "3mf" || has(b"3dmodel.model")) {
+        return Format::ThreeMf;
     }
     if let Some((_, what)) = MAGIC.iter().find(|(magic, _)| head.starts_with(magic) || start.starts_with(magic)) {
         return Format::Foreign(what);
@@ -178,6 +188,7 @@ fn by_extension(extension: &str) -> Format {
         "off" => Format::Off,
         "ply" => Format::Ply,
         "obj" => Format::Obj,
+        "3mf" => Format::ThreeMf,
         _ => FOREIGN_EXTENSIONS
             .iter()
             .find(|(foreign, _)| *foreign == extension)

@@ -1,4 +1,4 @@
-//! Typed views into buffers [glTF2 §3.6.2]. Whether the bytes are really there is checked when a view is made, in 64 bits;
+//! Typed views into buffers [Gltf2 §3.6.2]. Whether the bytes are really there is checked when a view is made, in 64 bits;
 //! nothing is read or allocated by what the file announces.
 
 use serde_json::Value;
@@ -115,7 +115,7 @@ impl Accessor<'_> {
         base.unwrap_or_default()
     }
 
-    /// One number; integers that stand for 0..1 or -1..1 are divided by their largest [glTF2 §3.6.2.2].
+    /// One number; integers that stand for 0..1 or -1..1 are divided by their largest [Gltf2 §3.11].
     #[inline]
     fn number(&self, bytes: &[u8]) -> f64 {
         let (value, largest) = match (self.component, bytes) {

@@ -1,4 +1,4 @@
-//! The bytes of a glTF file's buffers: the binary chunk, data URIs, files beside it [glTF2 §3.6.1].
+//! The bytes of a glTF file's buffers: the binary chunk, data URIs, files beside it [Gltf2 §3.6.1].
 
 use std::borrow::Cow;
 
@@ -46,8 +46,11 @@ fn one<'a>(import: &mut Import<'_>, index: usize, buffer: &Value, binary: Option
     }
     let path = String::from_utf8_lossy(&percent_decoded(uri)).into_owned();
     import.side_file(&path).map(Cow::Owned).map_err(|why| {
-        let way_out =
-            if why.0.contains(';') { "" } else { "; put it there, or export as .glb, which holds everything" };
+        let way_out = if why.0.contains(';') {
+            ""
+        } else {
+            "; put it beside the file, or export as .glb, which holds everything"
+        };
         format!("the file {} of buffer {index} {}{way_out}", quote(path.as_bytes()), why.0)
     })
 }

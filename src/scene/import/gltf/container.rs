@@ -1,4 +1,4 @@
-//! The envelope of a glTF file: bare JSON, or a GLB with a JSON and a binary chunk [glTF2 §4.4].
+//! The envelope of a glTF file: bare JSON, or a GLB with a JSON and a binary chunk [Gltf2 §4.4].
 
 use serde_json::Value;
 

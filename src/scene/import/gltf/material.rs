@@ -1,4 +1,4 @@
-//! Materials: factors only, since textures are not drawn [glTF2 §3.9].
+//! Materials: factors only, since textures are not drawn [Gltf2 §3.9].
 
 use glam::Vec3;
 use serde_json::Value;

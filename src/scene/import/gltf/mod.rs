@@ -1,4 +1,4 @@
-//! glTF 2.0, as `.gltf` and `.glb` [glTF2].
+//! glTF 2.0, as `.gltf` and `.glb` [Gltf2].
 //!
 //! Every pair of mesh and primitive that is placed is one shape, read once; every node that has it is a part. Read: triangles,
 //! strips and fans, sparse and quantised vertices, normals, the first set of colours, factors of materials. Mended and noted:
@@ -15,6 +15,8 @@ mod json;
 mod material;
 mod nodes;
 mod primitive;
+#[cfg(test)]
+mod tests;
 
 use serde_json::Value;
 
@@ -147,5 +149,6 @@ fn needs_extension(name: &str) -> String {
     let is_compression =
         ["draco", "meshopt", "compression"].iter().any(|word| name.to_ascii_lowercase().contains(word));
     let without = if is_compression { "compression" } else { "it" };
-    format!("needs the extension {}, which is not read; export without {without}", quote(name.as_bytes()))
+    let name: String = name.chars().filter(char::is_ascii_graphic).take(64).collect();
+    format!("needs the extension {name}, which is not read; export without {without}")
 }

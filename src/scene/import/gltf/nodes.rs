@@ -1,4 +1,4 @@
-//! The tree of nodes: which mesh stands where [glTF2 §3.5].
+//! The tree of nodes: which mesh stands where [Gltf2 §3.5].
 //!
 //! Walked with a stack of its own: trees may be deeper than the program's. A node is placed once, as the format has it.
 

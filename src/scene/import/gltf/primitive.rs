@@ -1,4 +1,4 @@
-//! Primitives to shapes: lists, strips and fans of triangles [glTF2 §3.7.2].
+//! Primitives to shapes: lists, strips and fans of triangles [Gltf2 §3.7.2].
 
 use std::collections::HashMap;
 
@@ -110,7 +110,7 @@ impl Shapes {
         let is_there = |triangle: &[u32; 3]| triangle.iter().all(|&index| (index as usize) < positions.count);
         triangles.retain(is_there);
         let num_cut = usize::from(recipe.mode == 4 && num_corners % 3 != 0);
-        self.leave_out(NoteKind::TriangleToNowhere, num_all - triangles.len() + num_cut, place, report);
+        self.leave_out(NoteKind::FaceOutOfRange, num_all - triangles.len() + num_cut, place, report);
         let mut used = compact(&mut triangles, positions.count);
         self.take(used.len())?;
         let mut points: Vec<DVec3> = used.iter().map(|&i| DVec3::from(positions.floats::<3>(i as usize))).collect();
@@ -118,7 +118,7 @@ impl Shapes {
         if !points.iter().all(is_point) {
             let num_all = triangles.len();
             triangles.retain(|triangle| triangle.iter().all(|&index| is_point(&points[index as usize])));
-            self.leave_out(NoteKind::TriangleNotFinite, num_all - triangles.len(), place, report);
+            self.leave_out(NoteKind::FaceNowhere, num_all - triangles.len(), place, report);
             let left = compact(&mut triangles, points.len());
             points = left.iter().map(|&i| points[i as usize]).collect();
             used = left.iter().map(|&i| used[i as usize]).collect();
