@@ -213,7 +213,8 @@ fn farthest_from(center: Vec3, reach: f32, shapes: &[Shape], parts: &[Part]) -> 
         }
         for &p in &shape.positions {
             let p = part.world_from_shape.transform_point3(p);
-            let distance = p.distance(center);
+            // Squares of the smallest scenes vanish in single precision.
+            let distance = p.as_dvec3().distance(center.as_dvec3()) as f32;
             if distance > reach {
                 (reach, farthest) = (distance, Some(p));
             }
