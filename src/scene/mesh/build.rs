@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use glam::{DAffine3, DVec3, Vec3};
+use glam::{Affine3A, DAffine3, DVec3, Vec3};
 
 use super::mend::mend;
 use super::place::{self, Frame, extremes, is_position, power_below};
@@ -15,6 +15,9 @@ use crate::scene::{NoteKind, Report, Sphere, bounding_sphere};
 const COMMON_RADII: std::ops::RangeInclusive<f64> = 1e-4..=1e6;
 /// Sizes of a shape, in scene units, that need no scale of their own.
 const COMMON_SIZES: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
+/// The largest entry of a placement whose squares single precision holds with room to spare. Only shapes that are flat
+/// along an axis, or so far away that they do not count for the unit, have larger ones.
+const LARGEST_ENTRY: f64 = 1e15;
 /// Vertices of shapes placed several times that are looked at to measure the sphere around all; then their spheres do.
 const MOST_MEASURED: usize = 1 << 24;
 /// Attempts at the sphere around all, and the excess that is not worth another one.
@@ -42,36 +45,42 @@ impl Assembly {
         let (low, high) = bounds(&parts, &shapes, &frames, &num_places)?;
         let origin = low * 0.5 + high * 0.5;
         let unit = unit_for(high * 0.5 - low * 0.5);
+        let stored: Vec<Option<Stored>> = frames
+            .iter()
+            .zip(&num_places)
+            .map(|(frame, &times)| frame.map(|frame| Stored::new(frame, times > 1, unit, origin)))
+            .collect();
 
-        let mut name_of: Vec<&str> = vec![""; shapes.len()];
-        parts.iter().rev().for_each(|part| name_of[part.shape as usize] = &part.name);
-        // For each shape its number among those that are left, and what scales its positions back.
-        let mut kept: Vec<Option<(u32, DAffine3)>> = Vec::with_capacity(shapes.len());
+        // The first part of each shape gives it a name for the report; without one it is not needed.
+        let mut name_of: Vec<Option<&str>> = vec![None; shapes.len()];
+        let mut worlds: Vec<Option<Affine3A>> = Vec::with_capacity(parts.len());
+        for part in &parts {
+            let index = part.shape as usize;
+            let world = stored[index].as_ref().and_then(|stored| stored.world(&part.file_from_shape, unit, origin));
+            match world {
+                Some(_) => _ = name_of[index].get_or_insert(&part.name),
+                None if stored[index].is_some() => report.note(NoteKind::PartUnplaceable, None, || part.name.clone()),
+                None => {}
+            }
+            worlds.push(world);
+        }
         let mut mended: Vec<Shape> = Vec::new();
-        for (index, raw) in shapes.into_iter().enumerate() {
-            let shape = frames[index].and_then(|frame| {
-                let (placing, file_from_stored) = placing(&frame, num_places[index] > 1, unit, origin);
-                mend(raw, &frame, placing, name_of[index], report).map(|shape| (shape, file_from_stored))
-            });
-            kept.push(shape.map(|(shape, file_from_stored)| {
+        let mut number_of: Vec<Option<u32>> = Vec::with_capacity(shapes.len());
+        for ((raw, stored), name) in shapes.into_iter().zip(&stored).zip(name_of) {
+            let shape = stored.as_ref().zip(name);
+            let shape = shape.and_then(|(stored, name)| mend(raw, &stored.frame, stored.placing, name, report));
+            number_of.push(shape.map(|shape| {
                 mended.push(shape);
-                (mended.len() as u32 - 1, file_from_stored)
+                mended.len() as u32 - 1
             }));
         }
         let mut names = Names::default();
         let mut placed: Vec<Part> = Vec::with_capacity(parts.len());
-        for RawPart { shape, material, name, path, file_from_shape } in parts {
-            let is_baked = num_places[shape as usize] == 1;
-            let Some((shape, shape_from_stored)) = kept[shape as usize] else { continue };
-            let world_from_shape = if is_baked {
-                glam::Affine3A::IDENTITY
-            } else {
-                let moved = DAffine3 { translation: file_from_shape.translation - origin, ..file_from_shape };
-                let world_from_stored = moved * shape_from_stored;
-                single(DAffine3::from_scale(DVec3::splat(1.0 / unit)) * world_from_stored)
-            };
-            let (name, path) = (names.number(name), names.number(path));
-            placed.push(Part { shape, material, name, path, file, world_from_shape });
+        for (RawPart { shape, material, name, path, .. }, world) in parts.into_iter().zip(worlds) {
+            if let (Some(shape), Some(world_from_shape)) = (number_of[shape as usize], world) {
+                let (name, path) = (names.number(name), names.number(path));
+                placed.push(Part { shape, material, name, path, file, world_from_shape });
+            }
         }
         if placed.is_empty() {
             return None;
@@ -89,16 +98,36 @@ fn unit_for(half_diagonal: DVec3) -> f64 {
     if COMMON_RADII.contains(&radius) { 1.0 } else { power_below(radius) }
 }
 
-/// How the positions of a shape are stored, and what brings those back to the coordinates of the file's shape.
-fn placing(frame: &Frame, is_shared: bool, unit: f64, origin: DVec3) -> (Placing, DAffine3) {
-    let to_units = 1.0 / (frame.scale() * unit);
-    if !is_shared {
-        return (Placing { scale: to_units, middle: (frame.middle() - origin) / unit }, DAffine3::IDENTITY);
+/// How the positions of a shape are stored.
+struct Stored {
+    frame: Frame,
+    placing: Placing,
+    /// From stored positions to the coordinates of the file's shape; none where they are those of the scene.
+    shape_from_stored: Option<DAffine3>,
+}
+
+impl Stored {
+    fn new(frame: Frame, is_shared: bool, unit: f64, origin: DVec3) -> Stored {
+        let to_units = 1.0 / (frame.scale() * unit);
+        if !is_shared {
+            let placing = Placing { scale: to_units, middle: (frame.middle() - origin) / unit };
+            return Stored { frame, placing, shape_from_stored: None };
+        }
+        let scale = if COMMON_SIZES.contains(&(frame.half() / unit)) { to_units } else { 1.0 };
+        let mut shape_from_stored = DAffine3::from_scale(DVec3::splat(1.0 / (frame.scale() * scale)));
+        shape_from_stored.translation = frame.middle();
+        let placing = Placing { scale, middle: DVec3::ZERO };
+        Stored { frame, placing, shape_from_stored: Some(shape_from_stored) }
     }
-    let scale = if COMMON_SIZES.contains(&(frame.half() / unit)) { to_units } else { 1.0 };
-    let back = 1.0 / (frame.scale() * scale);
-    let shape_from_stored = DAffine3::from_scale(DVec3::splat(back));
-    (Placing { scale, middle: DVec3::ZERO }, DAffine3 { translation: frame.middle(), ..shape_from_stored })
+
+    /// The placement in the scene; none if single precision cannot hold it.
+    fn world(&self, file_from_shape: &DAffine3, unit: f64, origin: DVec3) -> Option<Affine3A> {
+        let Some(shape_from_stored) = self.shape_from_stored else { return Some(Affine3A::IDENTITY) };
+        let mut world = *file_from_shape * shape_from_stored;
+        world.translation -= origin;
+        let entries = world.to_cols_array().map(|entry| entry / unit);
+        entries.iter().all(|entry| entry.abs() <= LARGEST_ENTRY).then(|| single(DAffine3::from_cols_array(&entries)))
+    }
 }
 
 /// The parts that can be placed. One whose placement is not finite or shrinks everything to a line is left out, with
@@ -141,8 +170,9 @@ fn bounds(
 /// A sphere around all parts, at most 1 % too large where shapes placed several times have fewer than [`MOST_MEASURED`]
 /// vertices in all their places.
 fn sphere_around(shapes: &[Shape], parts: &[Part]) -> Sphere {
-    if let [part] = parts {
-        return shapes[part.shape as usize].sphere;
+    match parts {
+        [part] if part.world_from_shape == Affine3A::IDENTITY => return shapes[part.shape as usize].sphere,
+        _ => {}
     }
     let farthest: Vec<Vec<Vec3>> = shapes.iter().map(|shape| extremes(shape.positions.iter().copied())).collect();
     let mut points: Vec<Vec3> = Vec::new();
@@ -174,7 +204,7 @@ fn farthest_from(center: Vec3, reach: f32, shapes: &[Shape], parts: &[Part]) -> 
         if bound <= reach {
             continue;
         }
-        if part.world_from_shape != glam::Affine3A::IDENTITY {
+        if part.world_from_shape != Affine3A::IDENTITY {
             num_measured += shape.positions.len();
         }
         if num_measured > MOST_MEASURED {
@@ -183,7 +213,8 @@ fn farthest_from(center: Vec3, reach: f32, shapes: &[Shape], parts: &[Part]) -> 
         }
         for &p in &shape.positions {
             let p = part.world_from_shape.transform_point3(p);
-            let distance = p.distance(center);
+            // Squares of the smallest scenes vanish in single precision.
+            let distance = p.as_dvec3().distance(center.as_dvec3()) as f32;
             if distance > reach {
                 (reach, farthest) = (distance, Some(p));
             }

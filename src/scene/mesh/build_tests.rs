@@ -409,6 +409,17 @@ fn places_that_are_none_are_left_out() {
     assert!((assembly.expect("one").sphere.radius - 12.0_f32.sqrt()).abs() < 0.01);
 }
 
+#[test]
+fn a_place_that_single_precision_cannot_hold_is_left_out() {
+    // Flat shapes hide any scale across them.
+    let flat = mapped(terrain(), |p| p.with_z(0.0));
+    let place = |z: f64| DAffine3::from_translation(DVec3::X) * DAffine3::from_scale(DVec3::new(1.0, 1.0, z));
+    let (assembly, report) = build(vec![flat], vec![part(0, place(1.0)), part(0, place(1e60))]);
+    let assembly = assembly.expect("one sheet");
+    assert_sound(&assembly);
+    assert_eq!((assembly.parts.len(), report.count(NoteKind::PartUnplaceable)), (1, 1));
+}
+
 /// Triangles among few points, with copies, specks and wild numbers.
 fn any_mesh(random: &mut Random) -> (Vec<RawShape>, Vec<super::RawPart>) {
     let num_shapes = 1 + random.below(3);

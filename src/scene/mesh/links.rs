@@ -172,3 +172,56 @@ fn sorted_corners(triangles: &[[u32; 3]], num_places: usize) -> (Vec<u32>, Vec<u
     starts.pop();
     (starts, corners)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    fn surface(num_places: usize, triangles: &[[u32; 3]]) -> Surface {
+        Surface { positions: vec![DVec3::ZERO; num_places], triangles: triangles.to_vec(), ..Surface::default() }
+    }
+
+    #[test]
+    fn half_edges_find_each_other() {
+        let surface = surface(5, &[[0, 1, 2], [2, 1, 3]]);
+        let links = Links::new(&surface, &[]);
+        assert_eq!(links.twins, [[OPEN, 3, OPEN], [1, OPEN, OPEN]]);
+        assert_eq!((links.num_open, links.num_shared), (4, 0));
+        assert_eq!((links.corners_at(2), links.corners_at(1)), (&[2, 3][..], &[1, 4][..]));
+        assert!(links.corners_at(4).is_empty());
+    }
+
+    #[test]
+    fn three_at_an_edge_are_parted_unless_one_is_flat() {
+        let surface = surface(5, &[[0, 1, 2], [1, 0, 3], [0, 1, 4]]);
+        let links = Links::new(&surface, &[false; 3]);
+        assert_eq!([links.twins[0][0], links.twins[1][0], links.twins[2][0]], [SHARED; 3]);
+        assert_eq!((links.num_open, links.num_shared), (6, 1));
+        let links = Links::new(&surface, &[false, false, true]);
+        assert_eq!([links.twins[0][0], links.twins[1][0], links.twins[2][0]], [3, 0, SHARED]);
+    }
+
+    #[test]
+    fn copies_are_found() {
+        assert_eq!(Links::new(&surface(3, &[[0, 1, 2], [2, 1, 0]]), &[]).duplicates[..2], [0, 1]);
+        assert!(Links::new(&surface(4, &[[0, 1, 2], [2, 1, 3]]), &[]).duplicates.is_empty());
+    }
+
+    #[test]
+    fn turning_renumbers_as_if_it_had_been_so_in_the_file() {
+        let mut links = Links::new(&surface(4, &[[0, 1, 2], [1, 2, 3], [0, 3, 1]]), &[]);
+        links.turn(&[false, true, false]);
+        let expected = Links::new(&surface(4, &[[0, 1, 2], [1, 3, 2], [0, 3, 1]]), &[]);
+        assert_eq!((links.twins, links.corners), (expected.twins, expected.corners));
+    }
+
+    #[test]
+    fn rings_lead_around_a_place() {
+        let surface = surface(4, &[[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]]);
+        let mut links = Links::new(&surface, &[]);
+        assert_eq!(links.num_open, 0);
+        links.make_rings(&surface.triangles);
+        assert_eq!([links.twins[0][0], links.twins[1][0], links.twins[2][0]], [3, 6, 0]);
+    }
+}

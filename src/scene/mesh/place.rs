@@ -163,3 +163,64 @@ pub(super) fn extremes<P: Copy + Into<DVec3>>(points: impl Iterator<Item = P>) -
 pub(super) fn unit_normal(normal: Vec3) -> Option<Vec3> {
     normal.as_dvec3().try_normalize().map(|normal| normal.as_vec3())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn powers_of_two_are_exact_over_all_sizes() {
+        for (length, expected) in
+            [(1.0, 1.0), (1.99, 1.0), (2.0, 2.0), (0.75, 0.5), (1e100, 2_f64.powi(332)), (0.0, 1.0)]
+        {
+            assert_eq!(power_below(length), expected);
+        }
+        for length in [5e-324, 1e-300, 1e300, f64::MAX] {
+            assert!(power_below(length).is_normal() && (1.0 / power_below(length)).is_normal());
+        }
+    }
+
+    #[test]
+    fn only_vertices_in_use_make_the_frame() {
+        let mut raw =
+            RawShape { positions: vec![DVec3::ZERO, DVec3::X, DVec3::ONE, DVec3::splat(9.0)], ..RawShape::default() };
+        assert_eq!(Frame::of(&raw), None);
+        raw.triangles = vec![[0, 1, 2], [1, 2, 4]];
+        let frame = Frame::of(&raw).expect("a triangle");
+        assert_eq!((frame.low, frame.high, frame.middle()), (DVec3::ZERO, DVec3::ONE, DVec3::splat(0.5)));
+        assert_eq!((frame.half(), frame.scale()), (0.5, 1.0));
+        raw.positions[2].y = f64::NAN;
+        assert_eq!(Frame::of(&raw), None);
+    }
+
+    #[test]
+    fn a_mirror_keeps_the_outside_outside() {
+        let normals = RawNormals::PerVertex(vec![Vec3::Z; 3]);
+        let mut raw = RawShape {
+            positions: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
+            triangles: vec![[0, 1, 2]],
+            normals,
+            colors: Vec::new(),
+        };
+        bake(&mut raw, &DAffine3::from_scale(DVec3::new(1.0, 1.0, -3.0)));
+        assert_eq!(raw.triangles, [[0, 2, 1]]);
+        let RawNormals::PerVertex(normals) = raw.normals else { panic!("normals") };
+        assert_eq!(normals, [Vec3::NEG_Z; 3]);
+    }
+
+    #[test]
+    fn normals_of_uneven_scales_stay_upright() {
+        let normals = RawNormals::PerVertex(vec![Vec3::new(1.0, 1.0, 0.0)]);
+        let mut raw = RawShape { positions: vec![DVec3::ZERO], normals, ..RawShape::default() };
+        bake(&mut raw, &DAffine3::from_scale(DVec3::new(2.0, 1.0, 1.0)));
+        let RawNormals::PerVertex(normals) = raw.normals else { panic!("normals") };
+        assert!(normals[0].distance(Vec3::new(1.0, 2.0, 0.0).normalize()) < 1e-6);
+    }
+
+    #[test]
+    fn extremes_hold_the_corners_of_a_box() {
+        let points = (0..1000).map(|i| DVec3::new(f64::from(i % 10), f64::from(i / 10 % 10), f64::from(i / 100)));
+        let found = extremes(points);
+        assert!(found.len() == 26 && found.contains(&DVec3::ZERO) && found.contains(&DVec3::new(9.0, 0.0, 9.0)));
+    }
+}

@@ -230,6 +230,7 @@ fn weld_equal(positions: &mut Vec<DVec3>, triangles: &[[u32; 3]], frame: &Frame)
         place_of[index] = place;
     }
     positions.truncate(num_places as usize);
+    positions.shrink_to_fit();
     place_of
 }
 
