@@ -93,10 +93,6 @@ note_kinds! {
     ColorUnknown => "colour" / "colours": "missing or unreadable, taken as white",
     /// Positions that single precision rounds visibly.
     CoarsePositions => "molecule" / "molecules": "so wide that positions are rounded",
-    /// A face with a vertex that is NaN, infinite or no number.
-    FaceNowhere => "face" / "faces": "left out: a coordinate is no number",
-    /// A face that names a vertex that the file does not have.
-    FaceOutOfRange => "face" / "faces": "left out: a vertex that the file does not have",
     /// A face of no, one or two vertices.
     ShortFace => "face" / "faces": "left out: fewer than three vertices",
     /// A normal that the file does not have, or that is no number.
@@ -149,17 +145,11 @@ pub struct Note {
 }
 
 /// All notes about one file.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Report {
     /// The first few notes of each kind, in the order of the file.
     pub entries: Vec<Note>,
     counts: BTreeMap<NoteKind, u32>,
-}
-
-impl Default for Report {
-    fn default() -> Self {
-        Self { entries: Vec::new(), counts: [0; NoteKind::ALL.len()] }
-    }
 }
 
 impl Report {
