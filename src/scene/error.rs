@@ -62,6 +62,16 @@ pub enum SceneError {
         /// What is wrong, and the way out after a semicolon.
         what: String,
     },
+    /// A place in a binary file contradicts the format so that nothing can be drawn safely.
+    #[error("{file}: byte {byte}: {what}")]
+    MalformedAt {
+        /// The file as the caller named it.
+        file: String,
+        /// Byte, from 0.
+        byte: u64,
+        /// What is wrong, and the way out after a semicolon.
+        what: String,
+    },
     /// The file is of a kind that this reader does not read.
     #[error("{file}: {what}")]
     Unsupported {
@@ -78,6 +88,16 @@ pub enum SceneError {
         /// The number that was asked for.
         model: u32,
         /// The numbers that exist, in words.
+        available: String,
+    },
+    /// The file asks for a biological assembly that it does not have.
+    #[error("{file}: has no assembly {assembly}; it has {available}")]
+    NoSuchAssembly {
+        /// The file as the caller named it.
+        file: String,
+        /// The id that was asked for.
+        assembly: String,
+        /// The ids that exist, in words.
         available: String,
     },
     /// The file is larger than this program reads.

@@ -1,5 +1,7 @@
 //! Importers: bytes of a file to a molecule or a mesh. One file per format.
 
+mod bcif;
+mod cif;
 mod conect;
 mod lines;
 mod models;
@@ -88,6 +90,8 @@ pub(super) fn read(
     let mut import = Import { file, options, report: Report::default(), folder, side_files: Vec::new() };
     let content = match sniff(file, bytes) {
         Format::Pdb => pdb::read(&mut import, bytes).map(Content::Molecule)?,
+        Format::Cif => cif::read(&mut import, bytes).map(Content::Molecule)?,
+        Format::BinaryCif => bcif::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Xyz => xyz::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Foreign(what) => {
             return unsupported(format!("is {what}, not a molecule in PDB or XYZ format; {}", way_out(what)));
