@@ -55,7 +55,7 @@ note_kinds! {
     /// A `CONECT` record that is no number, or names the atom itself.
     BadBondRecord => "bond record" / "bond records": "ignored: no two atoms",
     /// A `CONECT` record to an atom that is missing or ambiguous.
-    BondToNowhere => "bond record" / "bond records": "ignored: the atom is missing or its serial number is not unique",
+    BondToNowhere => "bond record" / "bond records": "ignored: an atom is missing or not unique",
     /// A bond of the file that is several times too long, or has no length.
     OddBond => "bond of the file" / "bonds of the file": "left out: no length, or several times too long as across the edge of a cell",
     /// A symmetry operation of a crystal that is none.

@@ -30,7 +30,7 @@ enum Data<'a> {
 }
 
 impl<'a> Column<'a> {
-    /// Decodes a column of at most `limit` values.
+    /// Decodes a column; no list in it grows beyond `limit`.
     ///
     /// # Errors
     /// What is wrong, in words.
@@ -44,6 +44,18 @@ impl<'a> Column<'a> {
             _ => Vec::new(),
         };
         Ok(Self { data, mask })
+    }
+
+    /// How many values it holds, mask and strings included.
+    pub(super) fn len(&self) -> usize {
+        let data = match &self.data {
+            Data::None => 0,
+            Data::Integers(integers) => integers.len(),
+            // Twice as large as integers.
+            Data::Floats(floats) => 2 * floats.len(),
+            Data::Strings { offsets, indices, .. } => offsets.len() + indices.len(),
+        };
+        data + self.mask.len()
     }
 
     /// The value of a row, from 0.
