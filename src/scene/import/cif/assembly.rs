@@ -1,5 +1,6 @@
 //! Biological assemblies: copies of chains, placed by the operations of the file.
 
+use super::super::lines::quote;
 use super::entry::Block;
 use super::operators::{self, MAX_COPIES};
 use super::table::{Category, at};
@@ -83,7 +84,7 @@ pub(super) fn copies(
     if wanted.is_empty() {
         let mut ids: Vec<String> = Vec::new();
         for [id, ..] in &generators {
-            let id = String::from_utf8_lossy(id).into_owned();
+            let id = plain(id);
             if ids.len() <= LISTED_IDS && !ids.contains(&id) {
                 ids.push(id);
             }
@@ -114,9 +115,9 @@ pub(super) fn copies(
         for product in products.iter().filter(|_| !ranges.is_empty()) {
             let mut place = DAffine3::IDENTITY;
             for id in product {
-                let operator = operators.get(id.as_slice()).ok_or_else(|| {
-                    fail(format!("needs an operation {} that the file lacks", String::from_utf8_lossy(id)))
-                })?;
+                let operator = operators
+                    .get(id.as_slice())
+                    .ok_or_else(|| fail(format!("needs an operation {} that the file lacks", plain(id))))?;
                 place *= *operator;
             }
             copies.push(NewCopy { atoms: ranges.clone(), place });
@@ -126,6 +127,11 @@ pub(super) fn copies(
         return Err(fail("is made of chains that have no atoms here".to_string()));
     }
     Ok(copies)
+}
+
+/// An id in a message.
+fn plain(id: &[u8]) -> String {
+    quote(id).trim_matches('"').to_string()
 }
 
 /// The operations of a block by their ids.
@@ -148,7 +154,7 @@ fn operators(block: &Block<'_>) -> Result<HashMap<Vec<u8>, DAffine3>, String> {
         let error = (matrix * matrix.transpose() - DMat3::IDENTITY).to_cols_array();
         let is_rigid = error.iter().all(|error| error.abs() < 0.01) && shift.abs().max_element() < 1e9;
         if !is_rigid {
-            return Err(format!("has an operation {} that is no rotation and shift", String::from_utf8_lossy(&id)));
+            return Err(format!("has an operation {} that is no rotation and shift", plain(&id)));
         }
         operators.entry(id).or_insert(DAffine3::from_mat3_translation(matrix, shift));
     }

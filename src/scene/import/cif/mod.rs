@@ -62,22 +62,19 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<Molecule, Sc
         }
     }
     entry.end_block(import, &block)?;
-    let mut hint = "there is no row in a table _atom_site: download the whole entry".to_string();
     for &(unclosed, line) in tokens.unclosed() {
-        match unclosed {
-            Unclosed::Quote => import.report.note(NoteKind::OpenQuote, line, String::new),
-            Unclosed::TextField => {
-                hint = format!("the text that begins in line {line} is never closed: write a line ; behind it");
-            }
+        if unclosed == Unclosed::Quote {
+            import.report.note(NoteKind::OpenQuote, line, String::new);
         }
     }
-    if let Some(&(_, line)) = tokens.unclosed().iter().find(|(unclosed, _)| *unclosed == Unclosed::TextField) {
+    if let Some(line) = tokens.unclosed_text_field() {
         if entry.is_empty() {
+            let hint = format!("the text that begins in line {line} is never closed: write a line ; behind it");
             return Err(SceneError::NoAtoms { file: import.file.to_string(), hint });
         }
         import.report.note(NoteKind::OpenText, line, String::new);
     }
-    entry.finish(import, &hint)
+    entry.finish(import, "there is no row in a table _atom_site: download the whole entry")
 }
 
 /// Reads a loop, behind its first word.

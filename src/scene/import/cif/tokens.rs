@@ -36,6 +36,8 @@ pub(super) struct Tokens<'a> {
     bytes: &'a [u8],
     place: Place,
     unclosed: Vec<(Unclosed, u32)>,
+    /// Line of the first text field that holds a `loop_`: it was probably not closed where it should have been.
+    swallowing: Option<u32>,
 }
 
 /// Where a reader is.
@@ -49,7 +51,7 @@ impl<'a> Tokens<'a> {
     /// The words of a file whose byte-order mark, if any, is skipped.
     pub(super) fn new(bytes: &'a [u8]) -> Self {
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-        Self { bytes, place: Place { at: 0, line: 1 }, unclosed: Vec::new() }
+        Self { bytes, place: Place { at: 0, line: 1 }, unclosed: Vec::new(), swallowing: None }
     }
 
     /// The line of the next word, from 1, once [`Self::skip_space`] has found it; else that of the last one's end.
@@ -71,6 +73,12 @@ impl<'a> Tokens<'a> {
     /// What was never closed so far, with its lines.
     pub(super) fn unclosed(&self) -> &[(Unclosed, u32)] {
         &self.unclosed
+    }
+
+    /// The line of the text field that was most likely meant to end earlier, if one never ends.
+    pub(super) fn unclosed_text_field(&self) -> Option<u32> {
+        let last = self.unclosed.iter().find(|(unclosed, _)| *unclosed == Unclosed::TextField)?;
+        Some(self.swallowing.map_or(last.1, |line| line.min(last.1)))
     }
 
     /// Goes to the next word and returns its first byte; none at the end of the file.
@@ -166,6 +174,9 @@ impl<'a> Tokens<'a> {
             self.place.at = self.bytes.len();
             return rest;
         };
+        if self.swallowing.is_none() && memchr::memmem::find(&rest[..end], b"\nloop_").is_some() {
+            self.swallowing = Some(self.place.line);
+        }
         self.place.line += num_line_ends(&rest[..end]);
         self.place.at += 1 + end + 1;
         let text = &rest[..end];
