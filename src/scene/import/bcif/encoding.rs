@@ -1,6 +1,6 @@
 //! Encodings of binary columns: what bytes become numbers by.
 //!
-//! After [BinaryCIF, github.com/molstar/BinaryCIF, encoding.md]. Encodings are listed in the order in which they were
+//! After [Sehnal2020]. Encodings are listed in the order in which they were
 //! applied and undone from the last. Lengths in the file are never trusted: nothing grows beyond a limit that the caller
 //! derives from the size of the file.
 
@@ -63,7 +63,7 @@ fn byte_array(encoding: &Node<'_>, bytes: &[u8], limit: usize) -> Result<Numbers
         33 => 8,
         _ => return Err(format!("has bytes of type {number}, which is not known")),
     };
-    if bytes.len() % width != 0 || bytes.len() / width > limit {
+    if !bytes.len().is_multiple_of(width) || bytes.len() / width > limit {
         return Err(format!("has {} bytes for numbers of {width} bytes", bytes.len()));
     }
     Ok(match number {

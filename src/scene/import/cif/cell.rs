@@ -12,7 +12,7 @@ const FLATTEST: f64 = 1e-3;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Cell {
     /// From fractions of the edges to angstrom: `a` lies along x, `b` in the plane of x and y
-    /// [ITC D, 1.1; the archive's `SCALE` matrices are its inverse].
+    /// [PdbFormat, SCALE, whose matrix is its inverse].
     pub(super) cartesian_from_fractional: DMat3,
 }
 

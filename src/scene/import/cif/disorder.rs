@@ -1,7 +1,7 @@
 //! Disordered groups of a crystal: which of several places of one group is drawn.
 //!
 //! Of each assembly the group with the highest mean occupancy is drawn, the first in the file if equal. Groups with a
-//! negative number are disordered about a symmetry element and have no alternative in the list [dictionary of core CIF,
+//! negative number are disordered about a symmetry element and have no alternative in the list [CoreCif,
 //! `_atom_site_disorder_group`]. Of atoms that share one place, as in alloys, the most occupied is drawn.
 
 use super::atom_site::Site;
@@ -9,10 +9,13 @@ use super::cell::Cell;
 use super::places::Places;
 use std::collections::HashMap;
 
+/// Sum and count of the occupancies of a group, and its first atom.
+type Occupied = (f64, u32, usize);
+
 /// For each atom whether it is drawn.
 pub(super) fn choose(sites: &[Site<'_>], cell: &Cell) -> Vec<bool> {
-    // Sum and count of occupancies, and the first atom, by assembly and group.
-    let mut groups: HashMap<(&[u8], &[u8]), (f64, u32, usize)> = HashMap::new();
+    // By assembly and group.
+    let mut groups: HashMap<(&[u8], &[u8]), Occupied> = HashMap::new();
     for (index, site) in sites.iter().enumerate().filter(|(_, site)| has_alternatives(site)) {
         let group = groups.entry((site.disorder.1, site.disorder.0)).or_insert((0.0, 0, index));
         *group = (group.0 + f64::from(site.atom.occupancy), group.1 + 1, group.2);

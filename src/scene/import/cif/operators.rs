@@ -1,6 +1,6 @@
 //! Which operations an assembly is made of: expressions such as `1`, `1,2`, `1-60` and `(X0)(1-5,11-15)`.
 //!
-//! Groups in parentheses are multiplied, and the last one is applied first [mmCIF dictionary, `oper_expression`].
+//! Groups in parentheses are multiplied, and the last one is applied first [MmCif, `oper_expression`].
 
 use super::super::number;
 
