@@ -112,6 +112,26 @@ impl MoleculeBuilder {
         index
     }
 
+    /// The atoms so far; their positions are in [`Self::positions`].
+    pub(super) fn atoms(&self) -> &[Atom] {
+        &self.atoms
+    }
+
+    /// Where the atoms are, in the file's coordinates.
+    pub(super) fn positions(&self) -> &[DVec3] {
+        &self.positions
+    }
+
+    /// The residues so far.
+    pub(super) fn residues(&self) -> &[Residue] {
+        &self.residues
+    }
+
+    /// The chains so far.
+    pub(super) fn chains(&self) -> &[Chain] {
+        &self.chains
+    }
+
     /// Draws these copies instead of the atoms as they are; atoms that no copy names are not drawn.
     pub fn set_copies(&mut self, copies: Vec<NewCopy>) {
         self.copies = copies;

@@ -5,7 +5,7 @@
 //! out. [`Scene::join`] puts the scenes of several files into one.
 //!
 //! ```text
-//! import/{sniff, pdb, conect, xyz}  ->  builder  ->  { altloc, bonds -> grid, sphere }  ->  molecule
+//! import/{sniff, pdb, conect, xyz, cif/, bcif/}  ->  builder  ->  { altloc, bonds -> grid, sphere }  ->  molecule
 //! import/...  ->  mesh/raw  ->  mesh/build  ->  mesh/assembly
 //! ```
 //! A new format is one file in `import/` that feeds a [`MoleculeBuilder`] or a [`RawMesh`], and a line in `import/mod.rs`.

@@ -29,6 +29,12 @@ note_kinds! {
     BadCoordinate => "atom" / "atoms": "skipped: a coordinate is no number",
     /// An atom line that ends inside its coordinates.
     ShortLine => "atom" / "atoms": "skipped: the line is cut short",
+    /// A row of a table with too few or too many values.
+    BadRow => "row" / "rows": "skipped: not as many values as columns",
+    /// A quotation that does not end on its line.
+    OpenQuote => "quotation" / "quotations": "never closed: taken to end with the line",
+    /// A text field that does not end at all.
+    OpenText => "text field" / "text fields": "never closed: what follows it is not read",
     /// Less occupied alternate locations.
     AlternateLocation => "alternate position" / "alternate positions": "left out: the most occupied one of each is drawn",
     /// Models or frames that were not asked for.
@@ -50,9 +56,11 @@ note_kinds! {
     /// A `CONECT` record that is no number, or names the atom itself.
     BadBondRecord => "bond record" / "bond records": "ignored: no two atoms",
     /// A `CONECT` record to an atom that is missing or ambiguous.
-    BondToNowhere => "bond record" / "bond records": "ignored: the atom is missing or its serial number is not unique",
+    BondToNowhere => "bond record" / "bond records": "ignored: an atom is missing or not unique",
     /// A bond of the file that is several times too long, or has no length.
     OddBond => "bond of the file" / "bonds of the file": "left out: no length, or several times too long as across the edge of a cell",
+    /// A symmetry operation of a crystal that is none.
+    BadSymmetry => "symmetry operation" / "symmetry operations": "ignored: not like -x+1/2, y, -z",
     /// Crowded atoms: not all neighbours were looked at.
     Crowded => "atom" / "atoms": "too crowded for bonds by distance: only some neighbours were tried",
     /// The count line of an XYZ file was mended.

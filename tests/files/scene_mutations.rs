@@ -46,7 +46,47 @@ const NASTY: &[&[u8]] = &[
     b"H ",
     b"          ",
     b"1D400",
+    b" ? ",
+    b" . ",
+    b"'",
+    b"\n;",
+    b"\n;\n",
+    b"\nloop_\n",
+    b"\ndata_x\n",
+    b"\n_atom_site.Cartn_x\n",
+    b"1-60",
+    b"(1-9999)(1-9999)",
+    b"\xdd\xff\xff\xff\xff",
+    b"\x91",
 ];
+
+/// A small mmCIF with all tables that are read, written in one row of atoms per line.
+const MMCIF: &str = "data_x\n_cell.length_a 10\n_cell.length_b 11\n_cell.length_c 12\n_cell.angle_beta 95.5\nloop_\n\
+    _pdbx_struct_assembly_gen.assembly_id\n_pdbx_struct_assembly_gen.oper_expression\n\
+    _pdbx_struct_assembly_gen.asym_id_list\n1 (1)(1-2) A,B\n2 1,2 A\nloop_\n_pdbx_struct_oper_list.id\n\
+    _pdbx_struct_oper_list.matrix[1][1]\n_pdbx_struct_oper_list.matrix[1][2]\n_pdbx_struct_oper_list.matrix[1][3]\n\
+    _pdbx_struct_oper_list.vector[1]\n_pdbx_struct_oper_list.matrix[2][1]\n_pdbx_struct_oper_list.matrix[2][2]\n\
+    _pdbx_struct_oper_list.matrix[2][3]\n_pdbx_struct_oper_list.vector[2]\n_pdbx_struct_oper_list.matrix[3][1]\n\
+    _pdbx_struct_oper_list.matrix[3][2]\n_pdbx_struct_oper_list.matrix[3][3]\n_pdbx_struct_oper_list.vector[3]\n\
+    1 1 0 0 0 0 1 0 0 0 0 1 0\n2 0 -1 0 0 1 0 0 0 0 0 1 20\nloop_\n_struct_conn.conn_type_id\n\
+    _struct_conn.ptnr1_label_asym_id\n_struct_conn.ptnr1_label_seq_id\n_struct_conn.ptnr1_label_atom_id\n\
+    _struct_conn.ptnr2_label_asym_id\n_struct_conn.ptnr2_label_seq_id\n_struct_conn.ptnr2_label_atom_id\n\
+    covale A 1 N B 2 O\nmetalc A 1 CA B 3 FE\nloop_\n_chem_comp_bond.comp_id\n_chem_comp_bond.atom_id_1\n\
+    _chem_comp_bond.atom_id_2\n_chem_comp_bond.value_order\nALA N CA SING\nALA CA C doub\nloop_\n\
+    _atom_site.group_PDB\n_atom_site.id\n_atom_site.type_symbol\n_atom_site.label_atom_id\n_atom_site.label_alt_id\n\
+    _atom_site.label_comp_id\n_atom_site.label_asym_id\n_atom_site.label_seq_id\n_atom_site.Cartn_x\n\
+    _atom_site.Cartn_y\n_atom_site.Cartn_z\n_atom_site.occupancy\n_atom_site.pdbx_PDB_model_num\n\
+    ATOM 1 N N . ALA A 1 0.0 0.0 0.0 1.00 1\nATOM 2 C CA A ALA A 1 1.4 0.1 0.0 0.60 1\n\
+    ATOM 3 C CA B ALA A 1 1.4 0.0 0.2 0.40 1\nATOM 4 C C . ALA A 1 2.1 1.3 0.0 1.00 1\n\
+    HETATM 5 O \"O\" . HOH B 2 5.1 1.3 0.0 1.00 1\nHETATM 6 FE FE . HEM B 3 2.1 3.3 0.0 1.00 2\n";
+
+/// A small crystal in two data blocks.
+const CRYSTAL: &str = "data_a\n_cell_length_a 5.64(1)\n_cell_length_b 5.64\n_cell_length_c 5.64\n_cell_angle_gamma 120\n\
+    loop_\n_symmetry_equiv_pos_as_xyz\nx,y,z\n'-x+1/2, y, -z'\nx-y,x,z+1/3\nloop_\n_atom_site_label\n\
+    _atom_site_type_symbol\n_atom_site_fract_x\n_atom_site_fract_y\n_atom_site_fract_z\n_atom_site_occupancy\n\
+    _atom_site_disorder_group\nNa1 Na1+ 0 0 0 1 .\nCl1 Cl- 0.5 0.5(2) 0.5 0.5 1\nC2 C .1 .2 .3 0.5 2\ndata_b\n\
+    _cell_length_a 5\n_cell_length_b 6\n_cell_length_c 7\n_atom_site_label C1\n_atom_site_fract_x 0.1\n\
+    _atom_site_fract_y 0.2\n_atom_site_fract_z 0.3\n";
 
 fn mutate(original: &[u8], random: &mut Random) -> Vec<u8> {
     let mut bytes = original.to_vec();
@@ -87,9 +127,11 @@ fn assert_sound(molecule: &Molecule) {
     assert!(!molecule.atoms.is_empty());
     let (sphere, count) = (molecule.bounding_sphere(), molecule.atoms.len() as u32);
     assert!(sphere.radius.is_finite() && molecule.origin.is_finite());
+    for (center, radius) in molecule.drawn_balls() {
+        let reach = center.as_dvec3().distance(sphere.center.as_dvec3());
+        assert!(reach + f64::from(radius) <= f64::from(sphere.radius));
+    }
     for atom in &molecule.atoms {
-        let reach = atom.position.as_dvec3().distance(sphere.center.as_dvec3());
-        assert!(reach + f64::from(atom.element.vdw_radius()) <= f64::from(sphere.radius));
         assert!(molecule.chains.len() > molecule.residue(atom).chain as usize);
     }
     for bond in &molecule.bonds {
@@ -103,12 +145,13 @@ fn assert_sound(molecule: &Molecule) {
 fn two_thousand_damaged_files_neither_panic_nor_break_promises() {
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
     let shipped = ["alpha_helix.pdb", "caffeine.xyz", "water.xyz"].map(|name| root.join("molecules").join(name));
-    let real =
-        ["acrolein.pdb", "psfgen-output.pdb", "MOF-5.pdb"].map(|name| root.join("../shared/data/molecules").join(name));
+    let real = ["acrolein.pdb", "psfgen-output.pdb", "MOF-5.pdb", "1cbs_full.bcif"]
+        .map(|name| root.join("../shared/data/molecules").join(name));
     let files: Vec<(String, Vec<u8>)> = shipped
         .iter()
         .chain(real.iter().filter(|path| path.is_file()))
         .map(|path| (path.display().to_string(), std::fs::read(path).expect("readable")))
+        .chain([MMCIF, CRYSTAL].map(|text| ("small.cif".to_string(), text.as_bytes().to_vec())))
         .collect();
     let mut random = Random(2016);
     let (mut num_loaded, mut num_refused) = (0, 0);
@@ -116,7 +159,8 @@ fn two_thousand_damaged_files_neither_panic_nor_break_promises() {
         let (name, original) = &files[random.below(files.len())];
         let bytes = mutate(original, &mut random);
         let model = [ModelChoice::First, ModelChoice::All, ModelChoice::Number(seed % 3)][random.below(3)];
-        match Scene::from_bytes_with(name, &bytes, &LoadOptions { model, ..LoadOptions::default() }) {
+        let assembly = [None, None, Some("1"), Some("cell")][random.below(4)].map(str::to_string);
+        match Scene::from_bytes_with(name, &bytes, &LoadOptions { model, assembly }) {
             Ok(scene) => {
                 assert_sound(&scene.molecule);
                 num_loaded += 1;

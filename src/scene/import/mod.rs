@@ -1,5 +1,7 @@
 //! Importers: bytes of a file to a molecule or a mesh. One file per format.
 
+mod bcif;
+mod cif;
 mod compact;
 mod conect;
 mod faces;
@@ -103,6 +105,8 @@ pub(super) fn read(
     let mut import = Import { file, options, report: Report::default(), folder, side_files: Vec::new() };
     let content = match sniff(file, bytes) {
         Format::Pdb => pdb::read(&mut import, bytes).map(Content::Molecule)?,
+        Format::Cif => cif::read(&mut import, bytes).map(Content::Molecule)?,
+        Format::BinaryCif => bcif::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Xyz => xyz::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Obj => obj::read(&mut import, bytes).map(Content::Mesh)?,
         Format::Off => off::read(&mut import, bytes).map(Content::Mesh)?,

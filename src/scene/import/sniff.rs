@@ -9,6 +9,10 @@ use std::path::Path;
 pub enum Format {
     /// Protein Data Bank, fixed columns.
     Pdb,
+    /// mmCIF, or a CIF of a small molecule.
+    Cif,
+    /// BinaryCIF, in MessagePack.
+    BinaryCif,
     /// A count, a comment, and lines of symbol x y z.
     Xyz,
     /// Wavefront OBJ.
@@ -54,9 +58,6 @@ const MAGIC: &[(&[u8], &str)] = &[
 
 /// Extensions of formats whose content does not say clearly what it is.
 const FOREIGN_EXTENSIONS: &[(&str, &str)] = &[
-    ("cif", "an mmCIF file"),
-    ("mmcif", "an mmCIF file"),
-    ("bcif", "a BinaryCIF file"),
     ("mmtf", "an MMTF file"),
     ("pqr", "a PQR file"),
     ("sdf", "an SDF file"),
@@ -83,6 +84,11 @@ pub fn sniff(name: &str, bytes: &[u8]) -> Format {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let head = &bytes[..bytes.len().min(HEAD)];
     let start = head.trim_ascii_start();
+    // A MessagePack map begins with such a byte, which no text does; the name of its first keys stands near it.
+    let is_map = matches!(head.first(), Some(0x80..=0x8f | 0xde | 0xdf));
+    if is_map && memchr::memmem::find(&head[..head.len().min(1024)], b"dataBlocks").is_some() {
+        return Format::BinaryCif;
+    }
     let extension = Path::new(name)
         .extension()
         .map(|extension| extension.to_string_lossy().to_ascii_lowercase())
@@ -148,7 +154,7 @@ fn by_lines(head: &[u8], extension: &str) -> Option<Format> {
         }
         let is_loop = number == 1 && starts(line, b"loop_");
         if is_loop || starts(line, b"data_") || starts(line, b"_atom_site") {
-            return Some(Format::Foreign("an mmCIF file"));
+            return Some(Format::Cif);
         }
         // A CIF begins with its data block, so nothing after a first record can change this.
         is_pdb = PDB_RECORDS.iter().any(|record| is_record(line, record.trim_ascii_end()));
@@ -182,6 +188,8 @@ fn is_record_end(next: Option<&u8>) -> bool {
 fn by_extension(extension: &str) -> Format {
     match extension {
         "pdb" | "ent" | "pdb1" | "brk" | "pdbqt" => Format::Pdb,
+        "cif" | "mmcif" => Format::Cif,
+        "bcif" => Format::BinaryCif,
         "xyz" => Format::Xyz,
         "stl" => Format::Stl,
         "gltf" | "glb" => Format::Gltf,
@@ -203,7 +211,8 @@ mod tests {
     #[test]
     fn content_beats_the_extension() {
         assert_eq!(sniff("a.pdb", b"\x89PNG\r\n\x1a\n"), Format::Foreign("a PNG picture"));
-        assert_eq!(sniff("a.pdb", b"data_1CRN\n#\nloop_\n_atom_site.id\nATOM 1 N"), Format::Foreign("an mmCIF file"));
+        assert_eq!(sniff("a.pdb", b"data_1CRN\n#\nloop_\n_atom_site.id\nATOM 1 N"), Format::Cif);
+        assert_eq!(sniff("a.pdb", b"\x83\xa7encoder\xa1x\xaadataBlocks\x90"), Format::BinaryCif);
         assert_eq!(sniff("a.xyz", b"ATOM      1  N   THR"), Format::Pdb);
         assert_eq!(sniff("a.txt", b"atom      1  n   thr"), Format::Pdb);
         assert_eq!(sniff("molecule", b"  3 \n\nC 0 0 0"), Format::Xyz);
@@ -217,6 +226,8 @@ mod tests {
     fn the_extension_helps_where_content_is_silent() {
         assert_eq!(sniff("a.PDB", b"hello"), Format::Pdb);
         assert_eq!(sniff("a.xyz", b"caffeine\n"), Format::Xyz);
+        assert_eq!(sniff("a.cif", b"# nothing yet\n"), Format::Cif);
+        assert_eq!(sniff("a.bcif", b"\x91\x91"), Format::BinaryCif);
         assert_eq!(sniff("a.cube", b"12\n"), Format::Foreign("a Gaussian cube file"));
         assert_eq!(sniff("a.pqr", b"ATOM      1  N   THR"), Format::Foreign("a PQR file"));
         assert_eq!(sniff("a.docx", b"hello"), Format::Unknown);
