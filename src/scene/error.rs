@@ -80,6 +80,16 @@ pub enum SceneError {
         /// The numbers that exist, in words.
         available: String,
     },
+    /// The file asks for a biological assembly that it does not have.
+    #[error("{file}: has no assembly {assembly}; it has {available}")]
+    NoSuchAssembly {
+        /// The file as the caller named it.
+        file: String,
+        /// The id that was asked for.
+        assembly: String,
+        /// The ids that exist, in words.
+        available: String,
+    },
     /// The file is larger than this program reads.
     #[error("{file}: is larger than {limit_mib} MiB; split it, or keep one model of it")]
     TooLarge {
