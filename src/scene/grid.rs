@@ -70,6 +70,66 @@ impl Grid {
     }
 }
 
+/// Which points are near enough to one of some to be looked at; some others are, too.
+pub(super) struct Near {
+    low: Vec3,
+    cell: f32,
+    /// Hashed cells that hold one of the points or touch one that does; a power of two of bits, or none to let all pass.
+    bits: Vec<u64>,
+}
+
+impl Near {
+    /// Marks the cells around `centers`, which must be among `points`.
+    pub(super) fn new(
+        points: impl Iterator<Item = Vec3>,
+        centers: impl Iterator<Item = Vec3> + Clone,
+        cell: f32,
+    ) -> Self {
+        let (low, num_points) =
+            points.fold((Vec3::splat(f32::INFINITY), 0_usize), |(low, count), point| (low.min(point), count + 1));
+        let num_centers = centers.clone().count();
+        let mut near = Self { low, cell, bits: Vec::new() };
+        // Where most points pass anyway, asking costs more than it saves.
+        if num_centers * 4 < num_points {
+            // 27 cells each, most of them shared: at most a third of the bits is set.
+            near.bits = vec![0; num_centers.next_power_of_two().clamp(64, 1 << 18)];
+            for center in centers {
+                let [x, y, z] = near.cell_of(center);
+                for (dx, dy, dz) in (0..27).map(|i| (i % 3, i / 3 % 3, i / 9)) {
+                    let (word, bit) = near.bit_of([x + dx, y + dy, z + dz]);
+                    near.bits[word] |= bit;
+                }
+            }
+        }
+        near
+    }
+
+    /// The cell of a point, one off the lowest.
+    fn cell_of(&self, point: Vec3) -> [u64; 3] {
+        // Far away, cells merge as those of the grid do.
+        let offset = point - self.low;
+        [offset.x, offset.y, offset.z].map(|value| u64::from(((value / self.cell) as u32).min(LAST)))
+    }
+
+    /// Where the bit of a cell is; cells here are one more than those of [`Near::cell_of`], which leaves room below.
+    fn bit_of(&self, [x, y, z]: [u64; 3]) -> (usize, u64) {
+        let key = z << (2 * BITS) | y << BITS | x;
+        // The upper bits of a product are the mixed ones.
+        let hash = key.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40;
+        (hash as usize >> 6 & (self.bits.len() - 1), 1 << (hash & 63))
+    }
+
+    /// Whether a point may be nearer than a cell's width to one of the centres.
+    pub(super) fn contains(&self, point: Vec3) -> bool {
+        if self.bits.is_empty() {
+            return true;
+        }
+        let [x, y, z] = self.cell_of(point);
+        let (word, bit) = self.bit_of([x + 1, y + 1, z + 1]);
+        self.bits[word] & bit != 0
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -103,6 +163,19 @@ mod tests {
         );
         found.sort_unstable();
         assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn points_near_a_centre_pass_and_most_others_do_not() {
+        let points: Vec<Vec3> =
+            (0..8000).map(|i| Vec3::new((i % 20) as f32, (i / 20 % 20) as f32, (i / 400) as f32) * 1.3).collect();
+        let centers = [points[0], points[4210], points[7999]];
+        let near = Near::new(points.iter().copied(), centers.iter().copied(), 1.5);
+        let is_near = |point: &&Vec3| centers.iter().any(|center| center.distance(**point) <= 1.5);
+        assert!(points.iter().filter(is_near).all(|&point| near.contains(point)));
+        assert!(points.iter().filter(|&&point| near.contains(point)).count() < 400);
+        let all = Near::new(points.iter().copied(), points.iter().copied(), 1.5);
+        assert!(points.iter().all(|&point| all.contains(point)));
     }
 
     #[test]
