@@ -92,7 +92,7 @@ impl Near {
         // Where most points pass anyway, asking costs more than it saves.
         if num_centers * 8 < num_points {
             // Some 80 cells each, many of them shared: at most a third of the bits is set.
-            near.bits = vec![0; (4 * num_centers).next_power_of_two().clamp(64, 1 << 18)];
+            near.bits = vec![0; (4 * num_centers).next_power_of_two().clamp(1 << 10, 1 << 18)];
             for center in centers {
                 near.mark(center, reach);
             }
