@@ -57,6 +57,18 @@ fn metals_bond_ligands_but_not_each_other() {
 }
 
 #[test]
+fn oxides_and_frameworks_bond_metal_and_oxygen_alone() {
+    // Distances of hematite: two kinds of Fe-O bonds, and irons and oxygens as near each other as they come.
+    let hematite =
+        [bare("Fe", 0.0, 0.0, 0.0), bare("O", 1.95, 0.0, 0.0), bare("O", 0.0, 2.12, 0.0), bare("Fe", 0.0, 0.0, 2.9)];
+    assert_eq!(pairs(&build(&hematite)), [(0, 1), (0, 2)]);
+    // A carboxylate on zirconium, as in UiO-66: its carbon is 3.1 angstrom from the metal.
+    let uio =
+        [bare("Zr", 0.0, 0.0, 0.0), bare("O", 2.2, 0.0, 0.0), bare("C", 3.0, 0.9, 0.0), bare("Zr", 0.0, 3.5, 0.0)];
+    assert_eq!(pairs(&build(&uio)), [(0, 1), (1, 2)]);
+}
+
+#[test]
 fn ions_bond_only_if_the_file_says_so() {
     let salt = [bare("Na", 0.0, 0.0, 0.0), bare("Cl", 2.8, 0.0, 0.0)];
     assert!(build(&salt).bonds.is_empty());

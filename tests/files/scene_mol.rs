@@ -151,6 +151,9 @@ fn solids_and_metals_have_the_bonds_that_chemists_draw() {
         rows.iter().map(|&(kind, count)| (kind.to_string(), count)).collect::<BTreeMap<_, _>>()
     };
     assert_eq!(kinds("mg_hcp_288.xyz"), of(&[]));
-    assert_eq!(kinds("au_thiol.xyz"), of(&[]));
-    assert_eq!(kinds("MOF-5.pdb"), of(&[]));
+    // Every sulphur holds its hydrogen and gold, but no gold another; two thiols of the cluster make a disulfide, 2.11
+    // angstrom long.
+    assert_eq!(kinds("au_thiol.xyz"), of(&[("Au-S", 96), ("H-S", 50), ("S-S", 1)]));
+    // The file names all of these itself.
+    assert_eq!(kinds("MOF-5.pdb"), of(&[("C-C", 24), ("C-H", 12), ("C-O", 12), ("O-Zn", 20)]));
 }

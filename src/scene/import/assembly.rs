@@ -60,7 +60,7 @@ impl Remarks {
         let text = record.get(10..).unwrap_or_default();
         let was_in_chains = std::mem::take(&mut self.is_in_chains);
         if let Some(ids) = after(text, b"BIOMOLECULE:") {
-            let ids = list(ids).map(|id| String::from_utf8_lossy(id).into_owned()).collect();
+            let ids = list(ids).map(printable).collect();
             self.biomolecules.push(Biomolecule { line, ids, groups: Vec::new() });
             return Ok(());
         }
@@ -212,6 +212,12 @@ fn place(import: &Import<'_>, line: u32, rows: &[Option<[f64; 4]>; 3]) -> Result
         return Err(import.malformed(line, what));
     }
     Ok(DAffine3 { matrix3: rotation, translation: DVec3::new(x[3], y[3], z[3]) })
+}
+
+/// An id for comparing and for messages: they are small numbers, whatever else stands there is cut and made printable.
+fn printable(id: &[u8]) -> String {
+    let letter = |&byte: &u8| if byte.is_ascii_graphic() { byte as char } else { '?' };
+    id.iter().take(12).map(letter).collect()
 }
 
 /// What follows a label, wherever it stands.
