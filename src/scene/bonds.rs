@@ -1,20 +1,22 @@
-//! Bonds: those that the file names, and those that distances tell.
+//! Bonds: those that the file names, those of known residues, and those that distances tell.
 //!
-//! Two atoms are bonded by distance if they are nearer than the sum of their covalent radii plus 0.45 angstrom and farther
+//! Amino acids, nucleotides and waters have the bonds of their templates ([`bond_templates`](super::bond_templates)), and
+//! no others among themselves but the links of chains and cystines. Of all others, two atoms are bonded by distance if they are nearer than the sum of their covalent radii plus 0.45 angstrom and farther
 //! apart than 0.4 [OpenBabel, `OBMol::ConnectTheDots` in src/mol.cpp: rule and both numbers]. Exceptions:
-//! - A hydrogen has one bond, to its nearest heavy atom (else to its nearest hydrogen).
+//! - A hydrogen has one bond, to its nearest heavy atom (else to its nearest hydrogen), and none if the file gives one.
 //! - Two metals never bond; a metal and a non-metal do, with the same tolerance: Co-Cl at 2.4 angstrom is a bond.
 //! - Alkali metals and calcium to radium bond only if the file says so ([`Element::is_ionic`]): rock salt has no bonds.
 //! - Models never bond with each other, nor waters, nor different alternate locations (but for a chain's own links).
 //! - An atom whose bonds the file lists is left as it is: see [`find`].
 //! - Non-metals keep their 8 nearest bonds, metals their 12 (ferrocene's iron has 10).
 //!
-//! Limits: bridging hydrogens (diborane) keep one bond; bond orders come from files alone.
+//! Limits: bridging hydrogens (diborane) keep one bond; bonds by distance are single.
 
+use super::bond_templates::{State, describe};
 use super::element::Element;
-use super::grid::Grid;
+use super::grid::{Grid, Near};
 use super::guess::{is_polymer_residue, is_water};
-use super::molecule::{Atom, Bond, Residue};
+use super::molecule::{Atom, Bond, Residue, ResidueKind};
 use super::report::{NoteKind, Report};
 use std::cell::Cell;
 use std::ops::Range;
@@ -22,7 +24,7 @@ use std::ops::Range;
 /// Slack over the sum of covalent radii, in angstrom.
 const TOLERANCE: f32 = 0.45;
 /// Nearer atoms are taken for one atom written twice, in angstrom.
-const MIN_DISTANCE: f32 = 0.4;
+pub(super) const MIN_DISTANCE: f32 = 0.4;
 /// A file's bond may be this many times as long as one by distance. Ours: coarse beads 5 angstrom apart pass, a bond
 /// that leaves a crystal's cell and should enter it again on the other side does not.
 const LONGEST_FILE_BOND: f32 = 3.0;
@@ -58,10 +60,11 @@ struct Candidate {
 ///
 /// Real PDB files list the bonds of ligands, not those of amino acids and nucleotides. So an atom counts as described if
 /// the file names a bond of it and its residue is neither amino acid, nucleotide nor water; two described atoms get no bond
-/// by distance, all other pairs may.
+/// by distance, nor do two that templates describe, all other pairs may.
 pub(super) fn find(atoms: &[Atom], residues: &[Residue], file_bonds: &[FileBond], report: &mut Report) -> Vec<Bond> {
     let mut bonds = accept_file_bonds(atoms, file_bonds, report);
-    let context = Context::new(atoms, residues, &bonds);
+    let described = describe(atoms, residues, &residues_with_orders(atoms, residues, &bonds));
+    let context = Context::new(atoms, residues, &bonds, described.states);
     let mut search = Search::new(atoms, &context);
     let mut start = 0;
     while start < atoms.len() {
@@ -72,8 +75,9 @@ pub(super) fn find(atoms: &[Atom], residues: &[Residue], file_bonds: &[FileBond]
     }
     let num_cut = search.cut.iter().filter(|&&cut| cut).count();
     report.note_many(NoteKind::Crowded, num_cut as u32, String::new);
+    bonds.extend(described.bonds);
     bonds.extend(filter(atoms, search.found).into_iter().map(|Candidate { a, b, .. }| Bond { a, b, order: 1 }));
-    // A bond found twice keeps its highest order: the file's.
+    // A bond found twice keeps its highest order.
     bonds.sort_unstable_by_key(|bond| (bond.a, bond.b, std::cmp::Reverse(bond.order)));
     bonds.dedup_by_key(|bond| (bond.a, bond.b));
     bonds.shrink_to_fit();
@@ -102,8 +106,25 @@ fn accept_file_bonds(atoms: &[Atom], file_bonds: &[FileBond], report: &mut Repor
     bonds
 }
 
+/// For each residue whether the file gives a bond in it that is not single; no residue if the file has no such bond.
+fn residues_with_orders(atoms: &[Atom], residues: &[Residue], file_bonds: &[Bond]) -> Vec<bool> {
+    let mut has_orders = Vec::new();
+    for bond in file_bonds.iter().filter(|bond| bond.order > 1) {
+        has_orders.resize(residues.len(), false);
+        for end in [bond.a, bond.b] {
+            has_orders[atoms[end as usize].residue as usize] = true;
+        }
+    }
+    has_orders
+}
+
+/// Whether two atoms never exist together, as they belong to different alternate locations.
+pub(super) fn are_exclusive(a: &Atom, b: &Atom) -> bool {
+    a.alt_loc != 0 && b.alt_loc != 0 && a.alt_loc != b.alt_loc
+}
+
 /// The longest bond of two elements, in angstrom.
-fn longest(a: Element, b: Element) -> f32 {
+pub(super) fn longest(a: Element, b: Element) -> f32 {
     a.covalent_radius() + b.covalent_radius() + TOLERANCE
 }
 
@@ -113,17 +134,21 @@ struct Context<'a> {
     residues: &'a [Residue],
     is_water: Vec<bool>,
     is_described: Vec<bool>,
+    states: Vec<State>,
 }
 
 impl<'a> Context<'a> {
-    fn new(atoms: &'a [Atom], residues: &'a [Residue], file_bonds: &[Bond]) -> Self {
+    fn new(atoms: &'a [Atom], residues: &'a [Residue], file_bonds: &[Bond], mut states: Vec<State>) -> Self {
         let mut is_described = vec![false; if file_bonds.is_empty() { 0 } else { atoms.len() }];
         for index in file_bonds.iter().flat_map(|bond| [bond.a as usize, bond.b as usize]) {
             let name = residues[atoms[index].residue as usize].name;
             is_described[index] = !is_polymer_residue(name.as_str()) && !is_water(name.as_str());
+            if atoms[index].element == Element::HYDROGEN {
+                states[index] = State::Closed;
+            }
         }
-        let is_water = residues.iter().map(|residue| is_water(residue.name.as_str())).collect();
-        Self { atoms, residues, is_water, is_described }
+        let is_water = residues.iter().map(|residue| residue.kind == ResidueKind::Water).collect();
+        Self { atoms, residues, is_water, is_described, states }
     }
 
     /// Whether a bond by distance may join two atoms.
@@ -133,14 +158,23 @@ impl<'a> Context<'a> {
             return false;
         }
         let (atom_a, atom_b) = (&self.atoms[a as usize], &self.atoms[b as usize]);
+        let (state_a, state_b) = (self.states[a as usize], self.states[b as usize]);
+        if state_a != State::Open && state_b != State::Open {
+            let chain = |atom: &Atom| self.residues[atom.residue as usize].chain;
+            return state_a.links(state_b, chain(atom_a) == chain(atom_b));
+        }
+        // A hydrogen that has its bond wants no other.
+        let is_bonded = |atom: &Atom, state| atom.element == Element::HYDROGEN && state != State::Open;
+        if is_bonded(atom_a, state_a) || is_bonded(atom_b, state_b) {
+            return false;
+        }
         if atom_a.residue != atom_b.residue
             && self.is_water[atom_a.residue as usize]
             && self.is_water[atom_b.residue as usize]
         {
             return false;
         }
-        let exclusive = atom_a.alt_loc != 0 && atom_b.alt_loc != 0 && atom_a.alt_loc != atom_b.alt_loc;
-        !exclusive || self.is_chain_link(atom_a, atom_b)
+        !are_exclusive(atom_a, atom_b) || self.is_chain_link(atom_a, atom_b)
     }
 
     /// Whether two atoms are the peptide or phosphate link of neighbours, each of which chose its own alternate location.
@@ -181,6 +215,11 @@ impl<'a> Search<'a> {
             return; // Nothing but metals.
         }
         let longest_bond = other + metal.max(other) + TOLERANCE;
+        let is_open = |index: usize| context.states[index] == State::Open;
+        let open = points.clone().filter(|&(index, _)| is_open(index)).map(|(_, atom)| atom.position);
+        let near = Near::new(points.clone().map(|(_, atom)| atom.position), open, longest_bond);
+        let points =
+            points.filter(|&(index, atom)| context.states[index] != State::Closed || near.contains(atom.position));
         let within = MIN_DISTANCE * MIN_DISTANCE..=longest_bond * longest_bond;
         let cut = Cell::from_mut(cut.as_mut_slice()).as_slice_of_cells();
         let grid = Grid::new(points.map(|(index, atom)| (index as u32, atom.position)), longest_bond);

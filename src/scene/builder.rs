@@ -132,6 +132,22 @@ impl MoleculeBuilder {
         &self.chains
     }
 
+    /// The atoms so far that stand in certain chains, as ascending ranges for [`NewCopy::atoms`].
+    pub fn atoms_of_chains(&self, is_wanted: impl Fn(&str) -> bool) -> Vec<Range<u32>> {
+        let is_wanted: Vec<bool> = self.chains.iter().map(|chain| is_wanted(&chain.id)).collect();
+        let mut ranges: Vec<Range<u32>> = Vec::new();
+        for (index, atom) in (0..).zip(&self.atoms) {
+            if !is_wanted[self.residues[atom.residue as usize].chain as usize] {
+                continue;
+            }
+            match ranges.last_mut() {
+                Some(range) if range.end == index => range.end += 1,
+                _ => ranges.push(index..index + 1),
+            }
+        }
+        ranges
+    }
+
     /// Draws these copies instead of the atoms as they are; atoms that no copy names are not drawn.
     pub fn set_copies(&mut self, copies: Vec<NewCopy>) {
         self.copies = copies;

@@ -70,6 +70,83 @@ impl Grid {
     }
 }
 
+/// Which points are near enough to one of some to be looked at; some others are, too.
+pub(super) struct Near {
+    low: Vec3,
+    cell: f32,
+    /// Hashed cells, half as wide as the reach, that may hold such points; a power of two of words, or none to let all pass.
+    bits: Vec<u64>,
+}
+
+impl Near {
+    /// Marks what is nearer than `reach` to one of `centers`, which must be among `points`.
+    pub(super) fn new(
+        points: impl Iterator<Item = Vec3>,
+        centers: impl Iterator<Item = Vec3> + Clone,
+        reach: f32,
+    ) -> Self {
+        let (low, num_points) =
+            points.fold((Vec3::splat(f32::INFINITY), 0_usize), |(low, count), point| (low.min(point), count + 1));
+        let num_centers = centers.clone().count();
+        let mut near = Self { low, cell: 0.5 * reach, bits: Vec::new() };
+        // Where most points pass anyway, asking costs more than it saves.
+        if num_centers * 8 < num_points {
+            // Some 80 cells each, many of them shared: at most a third of the bits is set.
+            near.bits = vec![0; (4 * num_centers).next_power_of_two().clamp(1 << 10, 1 << 18)];
+            for center in centers {
+                near.mark(center, reach);
+            }
+        }
+        near
+    }
+
+    /// Marks the cells that come nearer than `reach`, which is two cells, to a point.
+    fn mark(&mut self, center: Vec3, reach: f32) {
+        let [x, y, z] = self.cell_of(center);
+        // Where in its cell the point is. Far away that is not known, and all cells around are marked.
+        let place = (center - self.low) / self.cell - Vec3::new(x as f32, y as f32, z as f32);
+        let is_exact = place.min_element() >= 0.0 && place.max_element() <= 1.0;
+        let limit = (reach / self.cell + 0.01).powi(2);
+        for step in (0..125).map(|i| [i % 5, i / 5 % 5, i / 25]) {
+            let gap = |axis: usize| match step[axis] as f32 - 2.0 {
+                below if below < 0.0 => place[axis] - (below + 1.0),
+                above if above > 0.0 => above - place[axis],
+                _ => 0.0,
+            };
+            let gap = Vec3::new(gap(0), gap(1), gap(2));
+            if !is_exact || gap.length_squared() <= limit {
+                let (word, bit) = self.bit_of([x + step[0], y + step[1], z + step[2]]);
+                self.bits[word] |= bit;
+            }
+        }
+    }
+
+    /// The cell of a point.
+    fn cell_of(&self, point: Vec3) -> [u64; 3] {
+        // Far away, cells merge as those of the grid do.
+        let offset = point - self.low;
+        [offset.x, offset.y, offset.z].map(|value| u64::from(((value / self.cell) as u32).min(LAST - 2)))
+    }
+
+    /// Where the bit of a cell is; cells here are two more than those of [`Near::cell_of`], which leaves room below.
+    fn bit_of(&self, [x, y, z]: [u64; 3]) -> (usize, u64) {
+        let key = z << (2 * BITS) | y << BITS | x;
+        // The upper bits of a product are the mixed ones.
+        let hash = key.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40;
+        (hash as usize >> 6 & (self.bits.len() - 1), 1 << (hash & 63))
+    }
+
+    /// Whether a point may be nearer than the reach to one of the centres.
+    pub(super) fn contains(&self, point: Vec3) -> bool {
+        if self.bits.is_empty() {
+            return true;
+        }
+        let [x, y, z] = self.cell_of(point);
+        let (word, bit) = self.bit_of([x + 2, y + 2, z + 2]);
+        self.bits[word] & bit != 0
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -103,6 +180,19 @@ mod tests {
         );
         found.sort_unstable();
         assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn points_near_a_centre_pass_and_most_others_do_not() {
+        let points: Vec<Vec3> =
+            (0..8000).map(|i| Vec3::new((i % 20) as f32, (i / 20 % 20) as f32, (i / 400) as f32) * 1.3).collect();
+        let centers = [points[0], points[4210], points[7999]];
+        let near = Near::new(points.iter().copied(), centers.iter().copied(), 1.5);
+        let is_near = |point: &&Vec3| centers.iter().any(|center| center.distance(**point) <= 1.5);
+        assert!(points.iter().filter(is_near).all(|&point| near.contains(point)));
+        assert!(points.iter().filter(|&&point| near.contains(point)).count() < 400);
+        let all = Near::new(points.iter().copied(), points.iter().copied(), 1.5);
+        assert!(points.iter().all(|&point| all.contains(point)));
     }
 
     #[test]

@@ -17,8 +17,42 @@ const LIKELY_TWO_LETTER: &[&[u8; 2]] = &[
 /// Residues made of H, C, N, O, P and S alone, whatever their names look like.
 const POLYMER: &[&str] = &[
     "ALA", "ARG", "ASN", "ASP", "CYS", "GLN", "GLU", "GLY", "HIS", "ILE", "LEU", "LYS", "MET", "PHE", "PRO", "SER",
-    "THR", "TRP", "TYR", "VAL", "ASX", "GLX", "HID", "HIE", "HIP", "HSD", "HSE", "HSP", "CYX", "A", "C", "G", "T", "U",
-    "I", "DA", "DC", "DG", "DT", "DU", "DI", "ADE", "CYT", "GUA", "THY", "URA", "N",
+    "THR", "TRP", "TYR", "VAL", "ASX", "GLX", "HID", "HIE", "HIP", "HSD", "HSE", "HSP", "CYX", "CYM", "ASH", "GLH",
+    "LYN", "A", "C", "G", "T", "U", "I", "DA", "DC", "DG", "DT", "DU", "DI", "ADE", "CYT", "GUA", "THY", "URA", "N",
+    "DN", "RA", "RC", "RG", "RU", "DA5", "DC5", "DG5", "DT5", "DA3", "DC3", "DG3", "DT3", "RA5", "RC5", "RG5", "RU5",
+    "RA3", "RC3", "RG3", "RU3",
+];
+
+/// Nucleotides of three letters among [`POLYMER`]; all others of that length are amino acids.
+const NUCLEIC_OF_THREE: &[&str] = &[
+    "ADE", "CYT", "GUA", "THY", "URA", "DA5", "DC5", "DG5", "DT5", "DA3", "DC3", "DG3", "DT3", "RA5", "RC5", "RG5",
+    "RU5", "RA3", "RC3", "RG3", "RU3",
+];
+
+/// Amino acids that were changed after or while they joined the chain, other names that programs give them, and what
+/// caps a chain; three-letter names of [ChemComp].
+const MODIFIED_AMINO: &[&str] = &[
+    "MSE", "SEC", "PYL", "HYP", "SEP", "TPO", "PTR", "TYS", "CSO", "CSD", "CSX", "CME", "CSS", "OCS", "CAS", "CGU",
+    "PCA", "KCX", "LLP", "MLY", "MLZ", "M3L", "ALY", "LYZ", "AGM", "FME", "NLE", "NVA", "ABA", "AIB", "ORN", "DAB",
+    "CIR", "HIC", "MHO", "SME", "SAC", "IAS", "CRO", "DAL", "DVA", "DLE", "DPN", "DTR", "DTY", "DSN", "DTH", "DAS",
+    "DGL", "DGN", "DLY", "DAR", "DPR", "DCY", "DHI", "DIL", "MED", "SAR", "UNK", "ACE", "FOR", "NH2", "NME", "NMA",
+    "ETA", "CYS2", "CYSH", "HISA", "HISB", "HISD", "HISE", "HISH", "HIS1", "HIS2", "LYSH", "ASPH", "GLUH", "ARGN",
+];
+
+/// Nucleotides with changed bases or sugars [ChemComp].
+const MODIFIED_NUCLEIC: &[&str] = &[
+    "PSU", "5MC", "5MU", "H2U", "4SU", "OMC", "OMG", "OMU", "A2M", "1MA", "2MA", "6MZ", "MA6", "MIA", "T6A", "1MG",
+    "2MG", "7MG", "M2G", "G7M", "YYG", "YG", "QUO", "UR3", "3TD", "4OC", "5HU", "5BU", "5IU", "BRU", "CBR", "CBV",
+    "BGM", "8OG", "DZ", "P5P", "70U", "U8U", "MGT", "GTG", "RIA", "12A", "CM0", "2MU", "AET",
+];
+
+/// Monosaccharides of glycans, and common sugars of several [ChemComp; GLYCAM and CHARMM names beside them].
+const SUGAR: &[&str] = &[
+    "NAG", "NDG", "NGA", "A2G", "BGC", "GLC", "GAL", "GLA", "GLB", "MAN", "BMA", "FUC", "FUL", "FCA", "FCB", "SIA",
+    "SLB", "NGC", "XYP", "XYS", "XYL", "ARA", "ARB", "RIB", "RAM", "RM4", "FRU", "GUP", "GCU", "BDP", "IDR", "IDS",
+    "ADA", "GTR", "SGN", "GNS", "NGS", "ASG", "UAP", "KDO", "KDN", "GMH", "GCS", "PA1", "MUB", "AMU", "TYV", "ABE",
+    "SUC", "MAL", "LAT", "LBT", "TRE", "GLS", "CBI", "BGLC", "AGLC", "BGAL", "AGAL", "BMAN", "AMAN", "AFUC", "BFUC",
+    "BGLCNA", "AGLCNA", "ANE5", "0YB", "4YB", "VMB", "0MA", "0SA", "0LB", "0FA",
 ];
 
 /// Names that programs give to water.
@@ -32,18 +66,24 @@ pub(super) fn is_polymer_residue(name: &str) -> bool {
 
 /// What a residue is, by its name; `only` is the element of its atom where it has just one.
 pub(super) fn residue_kind(name: &str, only: Option<Element>) -> ResidueKind {
+    let is_nucleic = || name.len() < 3 || NUCLEIC_OF_THREE.contains(&name);
     match name {
-        _ if is_water(name) => ResidueKind::Water,
-        _ if is_polymer_residue(name) && name.len() == 3 && !NUCLEIC_OF_THREE.contains(&name) => ResidueKind::Protein,
-        _ if is_polymer_residue(name) => ResidueKind::Nucleic,
         "" => ResidueKind::Other,
-        _ if only.is_some_and(Element::is_known) => ResidueKind::Ion,
+        _ if is_water(name) => ResidueKind::Water,
+        _ if is_polymer_residue(name) && !is_nucleic() => ResidueKind::Protein,
+        _ if is_polymer_residue(name) && !only.is_some_and(may_be_ion) => ResidueKind::Nucleic,
+        _ if MODIFIED_AMINO.contains(&name) => ResidueKind::Protein,
+        _ if MODIFIED_NUCLEIC.contains(&name) => ResidueKind::Nucleic,
+        _ if SUGAR.contains(&name) => ResidueKind::Sugar,
+        _ if only.is_some_and(may_be_ion) => ResidueKind::Ion,
         _ => ResidueKind::Ligand,
     }
 }
 
-/// Nucleotides by the three letters of simulation programs; all others have one or two.
-const NUCLEIC_OF_THREE: &[&str] = &["ADE", "CYT", "GUA", "THY", "URA"];
+/// Whether a single atom of an element is an ion or a noble gas rather than what is left of something larger.
+fn may_be_ion(element: Element) -> bool {
+    element.is_metal() || matches!(element.number(), 2 | 9 | 10 | 17 | 18 | 35 | 36 | 53 | 54 | 86)
+}
 
 /// Whether a residue is a water molecule.
 pub(super) fn is_water(name: &str) -> bool {
@@ -117,6 +157,38 @@ mod tests {
     fn pdb(name: &str, residue: &str) -> &'static str {
         let columns: [u8; 4] = name.as_bytes().try_into().expect("four columns");
         from_pdb_name(columns, residue).symbol()
+    }
+
+    #[test]
+    fn residues_are_known_by_their_names() {
+        use ResidueKind::{Ion, Ligand, Nucleic, Other, Protein, Sugar, Water};
+        let kind = |name: &str| residue_kind(name, None);
+        for (names, expected) in [
+            ("ALA TRP MSE SEC PYL HYP SEP TPO PTR HSD HIE CYX LYN ACE NME UNK", Protein),
+            ("A U DG DT ADE PSU 5MC H2U 5MU OMG RA3", Nucleic),
+            ("NAG MAN BMA GAL FUC GLC SIA BGLC", Sugar),
+            ("HOH WAT TIP3 SOL DOD", Water),
+            ("HEM ATP SO4 LIG GOL", Ligand),
+        ] {
+            for name in names.split(' ') {
+                assert_eq!(kind(name), expected, "{name}");
+            }
+        }
+        let only = |name: &str, symbol: &str| residue_kind(name, Element::from_symbol(symbol.as_bytes()));
+        assert_eq!((only("ZN", "Zn"), only("CL", "Cl"), only("XE", "Xe"), only("K", "K")), (Ion, Ion, Ion, Ion));
+        // Uranium, and what is left of uridine or of a ligand.
+        assert_eq!((only("U", "U"), only("U", "P"), only("LIG", "C")), (Ion, Nucleic, Ligand));
+        assert_eq!((only("ALA", "C"), only("HOH", "O"), kind("")), (Protein, Water, Other));
+    }
+
+    #[test]
+    fn no_residue_is_of_two_kinds() {
+        let lists = [POLYMER, MODIFIED_AMINO, MODIFIED_NUCLEIC, SUGAR, WATER];
+        let mut names: Vec<&str> = lists.concat();
+        names.sort_unstable();
+        let twice: Vec<_> = names.windows(2).filter(|pair| pair[0] == pair[1]).map(|pair| pair[0]).collect();
+        assert!(twice.is_empty(), "{twice:?}");
+        assert!(NUCLEIC_OF_THREE.iter().all(|name| POLYMER.contains(name) && name.len() == 3));
     }
 
     #[test]

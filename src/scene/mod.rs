@@ -5,13 +5,15 @@
 //! out. [`Scene::join`] puts the scenes of several files into one.
 //!
 //! ```text
-//! import/{sniff, pdb, conect, xyz, cif/, bcif/}  ->  builder  ->  { altloc, bonds -> grid, sphere }  ->  molecule
+//! import/{sniff, pdb, cif/, sdf, ...}  ->  builder  ->  { altloc, bonds -> { templates, grid }, sphere }  ->  molecule
 //! import/...  ->  mesh/raw  ->  mesh/build  ->  mesh/assembly
 //! ```
 //! A new format is one file in `import/` that feeds a [`MoleculeBuilder`] or a [`RawMesh`], and a line in `import/mod.rs`.
 
 mod altloc;
 mod aov;
+mod bond_table;
+mod bond_templates;
 mod bonds;
 #[cfg(test)]
 mod bonds_tests;

@@ -28,6 +28,11 @@ impl Name {
         std::str::from_utf8(&self.0[..length]).unwrap_or_default()
     }
 
+    /// The label with primes where older files have stars: `O5'` for `O5*`.
+    pub fn with_primes(self) -> Self {
+        Self(self.0.map(|byte| if byte == b'*' { b'\'' } else { byte }))
+    }
+
     /// The label in upper case.
     pub fn to_uppercase(self) -> Self {
         Self(self.0.map(|byte| byte.to_ascii_uppercase()))
@@ -56,6 +61,7 @@ mod tests {
         assert_eq!(Name::new(b"").as_str(), "");
         assert_eq!(Name::new(b"TOOLONGNAME").as_str(), "TOOLON");
         assert_eq!(Name::new(&[b'A', 0xff, 0, b'B']).as_str(), "A??B");
+        assert_eq!(Name::new(b"O5*").with_primes().as_str(), "O5'");
         assert_eq!(format!("{:>4}", Name::new(b"N")), "   N");
     }
 }

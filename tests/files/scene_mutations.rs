@@ -1,10 +1,10 @@
-//! Two thousand damaged files, seeded: none may panic, and none may break what a molecule promises.
+//! Five thousand damaged files, seeded: none may panic, and none may break what a molecule promises.
 
 use restyle::scene::{LoadOptions, ModelChoice, Molecule, Scene};
 use std::path::PathBuf;
 
 /// Damaged files. At some 0.2 ms each, more would only repeat.
-const NUM_MUTATIONS: u32 = 2000;
+const NUM_MUTATIONS: u32 = 5000;
 
 /// Numbers from a seed [ONeill2014, its underlying LCG].
 struct Random(u64);
@@ -58,6 +58,60 @@ const NASTY: &[&[u8]] = &[
     b"(1-9999)(1-9999)",
     b"\xdd\xff\xff\xff\xff",
     b"\x91",
+    b"\n$$$$\n",
+    b"\nM  END\n",
+    b"\nM  CHG  1   1  -1\n",
+    b"  1  1  4  0\n",
+    b"\nM  V30 BEGIN ATOM\n",
+    b"\nM  V30 1 C 0 0 0 0 -\n",
+    b"\n@<TRIPOS>ATOM\n",
+    b"\n@<TRIPOS>MOLECULE\n",
+    b" ar\n",
+    b"\nREMARK 350   BIOMT1   1  1.0 0.0 0.0 0.0\n",
+    b"\nREMARK 350 BIOMOLECULE: 1\n",
+];
+
+/// Small files of the formats that are tables of words, and of a PDB file with an assembly.
+const SAMPLES: &[(&str, &str)] = &[
+    (
+        "pyrrole.sdf",
+        "pyrrole\n  x\n\n  5  5  0  0  0  0            999 V2000
+    0.0000    1.1000    0.0000 N   0  0  0
+    1.1000    0.3000    0.0000 C   0  3  0
+    0.7000   -1.0000    0.0000 C   0  0  0
+   -0.7000   -1.0000    0.0000 C   0  0  0
+   -1.1000    0.3000    0.0000 C   0  0  0
+  1  2  4  0\n  2  3  4  0\n  3  4  4  0\n  4  5  4  0\n  5  1  4  0\nM  CHG  1   1  -1\nM  END\n> <x>\n1\n\n$$$$
+water\n\n\n  1  0  0\n    9.0000    0.0000    0.0000 O   0  0  0\nM  END\n$$$$\n",
+    ),
+    (
+        "carbonyl.mol",
+        "\n\n\n  0  0  0     0  0            999 V3000\nM  V30 BEGIN CTAB\nM  V30 COUNTS 2 1 0 0 0\nM  V30 BEGIN ATOM
+M  V30 1 C 0 0 -\nM  V30 0 0\nM  V30 2 O 1.2 0 0 0 CHG=-1 X=(1 2)\nM  V30 END ATOM\nM  V30 BEGIN BOND\nM  V30 1 2 1 2
+M  V30 END BOND\nM  V30 END CTAB\nM  END\n",
+    ),
+    (
+        "peptide.mol2",
+        "@<TRIPOS>MOLECULE\npeptide\n 4 3 1\nPROTEIN\nUSER_CHARGES\n\n@<TRIPOS>ATOM
+ 1 N 0.0 0.0 0.0 N.am 1 GLY1 -0.1\n 2 CA 1.45 0.0 0.0 C.3 1 GLY1 0.1\n 3 C 2.9 0.3 0.0 C.2 1 GLY1\n 4 O 3.0 1.5 0.0 O.2 1 GLY1
+@<TRIPOS>BOND\n 1 1 2 1\n 2 2 3 ar\n 3 3 4 2\n@<TRIPOS>SUBSTRUCTURE\n 1 GLY1 1 RESIDUE 0 A GLY\n",
+    ),
+    (
+        "ions.pqr",
+        "REMARK   1\nATOM      1  N   THR     1      17.047  14.099   3.625 -0.3200 2.0000
+ATOM      2  CA  THR A   1A     16.967  12.784   4.338  0.3300 2.0000\nHETATM 3 ZN ZN 2 1.0 2.0 3.0 2.0 1.2\nEND\n",
+    ),
+    (
+        "copies.pdb",
+        "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A
+REMARK 350   BIOMT1   1  1.000000  0.000000  0.000000        0.00000
+REMARK 350   BIOMT2   1  0.000000  1.000000  0.000000        0.00000
+REMARK 350   BIOMT3   1  0.000000  0.000000  1.000000       20.00000
+ATOM      1  N   GLY A   1       0.000   0.000   0.000  1.00  0.00           N1+
+ATOM      2  CA  GLY A   1       1.450   0.000   0.000  1.00  0.00           C
+ATOM      3  C   GLY A   1       2.900   0.300   0.000  1.00  0.00           C
+ATOM      4  O   GLY B   1       3.000   1.500   0.000  1.00  0.00           O\n",
+    ),
 ];
 
 /// A small mmCIF with all tables that are read, written in one row of atoms per line.
@@ -131,6 +185,9 @@ fn assert_sound(molecule: &Molecule) {
         let reach = center.as_dvec3().distance(sphere.center.as_dvec3());
         assert!(reach + f64::from(radius) <= f64::from(sphere.radius));
     }
+    assert!(
+        molecule.copies.iter().flat_map(|copy| &copy.atoms).all(|range| range.start < range.end && range.end <= count)
+    );
     for atom in &molecule.atoms {
         assert!(molecule.chains.len() > molecule.residue(atom).chain as usize);
     }
@@ -142,7 +199,7 @@ fn assert_sound(molecule: &Molecule) {
 }
 
 #[test]
-fn two_thousand_damaged_files_neither_panic_nor_break_promises() {
+fn five_thousand_damaged_files_neither_panic_nor_break_promises() {
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
     let shipped = ["alpha_helix.pdb", "caffeine.xyz", "water.xyz"].map(|name| root.join("molecules").join(name));
     let real = ["acrolein.pdb", "psfgen-output.pdb", "MOF-5.pdb", "1cbs_full.bcif"]
@@ -152,6 +209,7 @@ fn two_thousand_damaged_files_neither_panic_nor_break_promises() {
         .chain(real.iter().filter(|path| path.is_file()))
         .map(|path| (path.display().to_string(), std::fs::read(path).expect("readable")))
         .chain([MMCIF, CRYSTAL].map(|text| ("small.cif".to_string(), text.as_bytes().to_vec())))
+        .chain(SAMPLES.iter().map(|&(name, text)| (name.to_string(), text.as_bytes().to_vec())))
         .collect();
     let mut random = Random(2016);
     let (mut num_loaded, mut num_refused) = (0, 0);
@@ -160,6 +218,7 @@ fn two_thousand_damaged_files_neither_panic_nor_break_promises() {
         let bytes = mutate(original, &mut random);
         let model = [ModelChoice::First, ModelChoice::All, ModelChoice::Number(seed % 3)][random.below(3)];
         let assembly = [None, None, Some("1"), Some("cell")][random.below(4)].map(str::to_string);
+        let assembly = (name == "copies.pdb" && random.below(2) == 0).then(|| "1".to_string());
         match Scene::from_bytes_with(name, &bytes, &LoadOptions { model, assembly }) {
             Ok(scene) => {
                 assert_sound(&scene.molecule);

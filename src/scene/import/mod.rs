@@ -1,21 +1,28 @@
 //! Importers: bytes of a file to a molecule or a mesh. One file per format.
 
+mod assembly;
 mod bcif;
 mod cif;
 mod compact;
 mod conect;
 mod faces;
 mod gltf;
+mod kekule;
 mod lines;
 mod models;
+mod mol2;
 mod number;
 mod obj;
 mod off;
 mod pdb;
 mod ply;
+mod pqr;
+mod sdf;
+mod sdf_v3000;
 mod side_file;
 mod sniff;
 mod stl;
+mod table;
 mod threemf;
 mod tree_path;
 mod vertex;
@@ -114,6 +121,9 @@ pub(super) fn read(
         Format::Stl => stl::read(&mut import, bytes).map(Content::Mesh)?,
         Format::Gltf => gltf::read(&mut import, bytes).map(Content::Mesh)?,
         Format::ThreeMf => threemf::read(&mut import, bytes).map(Content::Mesh)?,
+        Format::Sdf => sdf::read(&mut import, bytes).map(Content::Molecule)?,
+        Format::Mol2 => mol2::read(&mut import, bytes).map(Content::Molecule)?,
+        Format::Pqr => pqr::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Foreign(what) => {
             return unsupported(format!("is {what}, not a molecule in PDB or XYZ format; {}", way_out(what)));
         }
@@ -125,7 +135,13 @@ pub(super) fn read(
     };
     let Import { mut report, side_files, .. } = import;
     let (molecule, assembly) = match content {
-        Content::Molecule(molecule) => (molecule, Assembly::default()),
+        Content::Molecule(molecule) => {
+            // Importers whose formats have assemblies have set copies or refused by now.
+            if let Some(assembly) = options.assembly.as_ref().filter(|_| molecule.copies.is_empty()) {
+                return Err(assembly::none(file, assembly));
+            }
+            (molecule, Assembly::default())
+        }
         Content::Mesh(raw) => {
             let assembly = Assembly::build(raw, 0, &mut report);
             let assembly = assembly.ok_or_else(|| SceneError::NoTriangles { file: file.to_string() })?;

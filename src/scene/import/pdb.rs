@@ -5,9 +5,10 @@
 //! serials past their columns (hybrid-36, or one more digit), `MODEL` without `ENDMDL`. Atoms after `END` or `ENDMDL`
 //! without a new `MODEL` are the next model, as trajectories are written.
 //!
-//! Not read: `ANISOU`, `BIOMT` copies, secondary structure.
+//! Not read: `ANISOU`, secondary structure.
 
 use super::Import;
+use super::assembly::Remarks;
 use super::conect::{Conect, SerialPlace};
 use super::lines::{Lines, quote};
 use super::models::Models;
@@ -29,6 +30,7 @@ const COORDINATES_END: usize = 54;
 enum Record {
     Atom { is_hetero: bool, is_lower_case: bool },
     Conect,
+    Remark,
     Model,
     EndOfModel,
     Other,
@@ -52,6 +54,7 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<Molecule, Sc
     let mut builder = MoleculeBuilder::default();
     let mut models = Models::new(import.options.model);
     let mut conect = Conect::default();
+    let mut remarks = import.options.assembly.as_ref().map(|_| Remarks::default());
     // One serial and model per atom in the builder.
     let mut serials: Vec<(u32, u32)> = Vec::new();
     let mut state = ModelState::None;
@@ -79,6 +82,11 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<Molecule, Sc
                 }
             }
             Record::Conect => conect.add(number, line, &mut import.report),
+            Record::Remark => {
+                if let Some(remarks) = &mut remarks {
+                    remarks.add(import, number, line)?;
+                }
+            }
             Record::Model => {
                 if matches!(state, ModelState::Explicit | ModelState::Implicit) {
                     import
@@ -115,6 +123,10 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<Molecule, Sc
         conect.resolve(places, models.num_skipped() == 0, &mut import.report)
     };
     drop(serials);
+    if let (Some(remarks), false) = (remarks, builder.is_empty()) {
+        let copies = remarks.copies(import, &builder)?;
+        builder.set_copies(copies);
+    }
     builder.finish(&bonds, &mut import.report).ok_or_else(|| no_atoms(import))
 }
 
@@ -144,6 +156,7 @@ fn record(line: &[u8]) -> Record {
         b'A' if is(b"ATOM") => Record::Atom { is_hetero: false, is_lower_case },
         b'H' if starts(b"HETATM") => Record::Atom { is_hetero: true, is_lower_case },
         b'C' if starts(b"CONECT") => Record::Conect,
+        b'R' if starts(b"REMARK") => Record::Remark,
         b'M' if is(b"MODEL") => Record::Model,
         b'E' if is(b"ENDMDL") || is(b"END") => Record::EndOfModel,
         _ => Record::Other,
@@ -209,8 +222,19 @@ fn read_atom<'a>(
         chain: chain(line),
         model,
         b_factor: number::float(columns(line, 60, 66)).filter(|value| value.is_finite()).unwrap_or(0.0) as f32,
-        charge: 0.0,
+        charge: charge(columns(line, 78, 80)),
     }))
+}
+
+/// The charge of columns 79 and 80: a digit and its sign, in either order. Old files number their lines there.
+fn charge(field: &[u8]) -> f32 {
+    match field {
+        [digit @ b'0'..=b'9', sign @ (b'+' | b'-')] | [sign @ (b'+' | b'-'), digit @ b'0'..=b'9'] => {
+            let charge = f32::from(digit - b'0');
+            if *sign == b'-' { -charge } else { charge }
+        }
+        _ => 0.0,
+    }
 }
 
 /// The chain's letter; where there is none, the segment that simulation programs write behind the temperature factor.
@@ -326,6 +350,15 @@ mod tests {
         let hybrid = first(&atom("1", 0.0).replace("A   1 ", "AA00AB"));
         let residue = hybrid.molecule.residues[0];
         assert_eq!((residue.number, residue.insertion_code), (10_010, b'B'));
+    }
+
+    #[test]
+    fn formal_charges_have_a_sign() {
+        let charge = |columns: &str| {
+            let text = atom("1", 0.0).replace(" C\n", &format!(" C{columns}\n"));
+            first(&text).molecule.atoms[0].charge
+        };
+        assert_eq!(["2+", "1-", "-1", "70", " ", "", "++"].map(charge), [2.0, -1.0, -1.0, 0.0, 0.0, 0.0, 0.0]);
     }
 
     #[test]

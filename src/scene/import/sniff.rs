@@ -27,6 +27,12 @@ pub enum Format {
     Gltf,
     /// 3MF: a zip archive with a model in XML.
     ThreeMf,
+    /// Records of a table of atoms and bonds: SDF, MOL.
+    Sdf,
+    /// Sections that begin with `@<TRIPOS>`.
+    Mol2,
+    /// Atoms of a PDB file by words, with charge and radius.
+    Pqr,
     /// Another known kind: what it is, with its article.
     Foreign(&'static str),
     /// Nothing that is known here.
@@ -51,26 +57,13 @@ const MAGIC: &[(&[u8], &str)] = &[
     (b"\xff\xfe", "a text in UTF-16"),
     (b"\xfe\xff", "a text in UTF-16"),
     (b"version https://git-lfs", "a Git LFS pointer instead of the file itself"),
-    (b"@<TRIPOS>", "a MOL2 file"),
     (b"<", "a web page or XML file"),
     (b"{", "a JSON file"),
 ];
 
 /// Extensions of formats whose content does not say clearly what it is.
-const FOREIGN_EXTENSIONS: &[(&str, &str)] = &[
-    ("mmtf", "an MMTF file"),
-    ("pqr", "a PQR file"),
-    ("sdf", "an SDF file"),
-    ("mol", "a MOL file"),
-    ("mol2", "a MOL2 file"),
-    ("cube", "a Gaussian cube file"),
-    ("gro", "a GROMACS file"),
-    ("3mf", "a 3MF mesh"),
-    ("obj", "an OBJ mesh"),
-    ("stl", "an STL mesh"),
-    ("ply", "a PLY mesh"),
-    ("off", "an OFF mesh"),
-];
+const FOREIGN_EXTENSIONS: &[(&str, &str)] =
+    &[("mmtf", "an MMTF file"), ("cube", "a Gaussian cube file"), ("gro", "a GROMACS file")];
 
 /// Records that begin lines of PDB files and of nothing else that has them in its first lines.
 const PDB_RECORDS: &[&[u8]] = &[
@@ -138,12 +131,13 @@ fn by_lines(head: &[u8], extension: &str) -> Option<Format> {
     // Other formats begin with a number, too; their names tell.
     let is_count = !digits.is_empty()
         && digits.iter().all(u8::is_ascii_digit)
+        && !matches!(extension, "sdf" | "sd" | "mol" | "mdl" | "mol2" | "pqr")
         && !FOREIGN_EXTENSIONS.iter().any(|(foreign, _)| *foreign == extension);
     let mut is_pdb = false;
     for (number, line) in Lines::new(head) {
         let ends = |word: &[u8]| line.trim_ascii_end().ends_with(word);
         if number == 4 && (ends(b"V2000") || ends(b"V3000")) {
-            return Some(Format::Foreign("a MOL or SDF file"));
+            return Some(Format::Sdf);
         }
         if is_count {
             // The comment of an XYZ file may begin with any word.
@@ -151,6 +145,10 @@ fn by_lines(head: &[u8], extension: &str) -> Option<Format> {
                 break;
             }
             continue;
+        }
+        // Comments may come first.
+        if line.starts_with(b"@<TRIPOS>") {
+            return Some(Format::Mol2);
         }
         let is_loop = number == 1 && starts(line, b"loop_");
         if is_loop || starts(line, b"data_") || starts(line, b"_atom_site") {
@@ -164,7 +162,7 @@ fn by_lines(head: &[u8], extension: &str) -> Option<Format> {
     }
     match (is_count, is_pdb, extension) {
         (true, ..) => Some(Format::Xyz),
-        (_, true, "pqr") => Some(Format::Foreign("a PQR file")),
+        (_, true, "pqr") => Some(Format::Pqr),
         (_, true, _) => Some(Format::Pdb),
         _ => None,
     }
@@ -197,6 +195,9 @@ fn by_extension(extension: &str) -> Format {
         "ply" => Format::Ply,
         "obj" => Format::Obj,
         "3mf" => Format::ThreeMf,
+        "sdf" | "sd" | "mol" | "mdl" => Format::Sdf,
+        "mol2" => Format::Mol2,
+        "pqr" => Format::Pqr,
         _ => FOREIGN_EXTENSIONS
             .iter()
             .find(|(foreign, _)| *foreign == extension)
@@ -218,7 +219,8 @@ mod tests {
         assert_eq!(sniff("molecule", b"  3 \n\nC 0 0 0"), Format::Xyz);
         assert_eq!(sniff("a.pdb", b"-24\n\nC 0 0 0"), Format::Xyz);
         assert_eq!(sniff("a", b"1\nMODEL 1, data_set 2\nC 0 0 0"), Format::Xyz);
-        assert_eq!(sniff("a", b"7\n\n\n  1  0  0     0  0  0999 V2000"), Format::Foreign("a MOL or SDF file"));
+        assert_eq!(sniff("a", b"7\n\n\n  1  0  0     0  0  0999 V2000"), Format::Sdf);
+        assert_eq!(sniff("a.pdb", b"# a comment\n@<TRIPOS>MOLECULE\n"), Format::Mol2);
         assert_eq!(sniff("a.md", b"Model 1 is nicer\n"), Format::Unknown);
     }
 
@@ -229,7 +231,8 @@ mod tests {
         assert_eq!(sniff("a.cif", b"# nothing yet\n"), Format::Cif);
         assert_eq!(sniff("a.bcif", b"\x91\x91"), Format::BinaryCif);
         assert_eq!(sniff("a.cube", b"12\n"), Format::Foreign("a Gaussian cube file"));
-        assert_eq!(sniff("a.pqr", b"ATOM      1  N   THR"), Format::Foreign("a PQR file"));
+        assert_eq!(sniff("a.pqr", b"ATOM      1  N   THR"), Format::Pqr);
+        assert_eq!(sniff("a.sdf", b"2244\n\n\n  1  0\n"), Format::Sdf);
         assert_eq!(sniff("a.docx", b"hello"), Format::Unknown);
         assert_eq!(sniff("", b""), Format::Unknown);
     }
