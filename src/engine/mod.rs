@@ -36,7 +36,7 @@ const NOT_DRAWN: [(&str, Role, &str); 4] = [
 ];
 
 /// Types of objects that this version draws.
-pub const DRAWN_KINDS: &[ObjectKind] = &[ObjectKind::Atom, ObjectKind::Connector];
+pub const DRAWN_KINDS: &[ObjectKind] = &[ObjectKind::Atom, ObjectKind::Connector, ObjectKind::Mesh];
 
 /// Names and parameter tables of everything a style can refer to, from the registries.
 pub fn catalog() -> Vec<CatalogEntry> {
@@ -84,9 +84,7 @@ struct Content {
 
 impl Content {
     fn new(scene: Arc<Scene>, style: Arc<Style>) -> Content {
-        let molecule = &scene.molecule;
-        let positions = molecule.atoms.iter().map(|atom| atom.position);
-        let camera = CameraProvider::new(style.camera.clone(), molecule.bounding_sphere(), positions);
+        let camera = CameraProvider::new(style.camera.clone(), &scene);
         Content { scene, style, camera }
     }
 }
@@ -343,21 +341,21 @@ impl Engine {
 /// same is taken over.
 fn resolve(content: &Content, drawn: Option<&Drawn>, height_px: u32) -> Resolved {
     let Content { scene, style, camera } = content;
-    let molecule = &scene.molecule;
     let shaders = match drawn {
-        Some(drawn) => drawn.shaders.with_style(style),
-        None => ShaderProvider::new(molecule, style),
+        Some(drawn) => drawn.shaders.with_style(scene, style),
+        None => ShaderProvider::new(scene, style),
     };
     let key = ObjectKey::new(style, Arc::clone(shaders.assignment()));
     let (list, used, lengths) = match drawn.filter(|drawn| drawn.key == key) {
         Some(drawn) => (None, drawn.used.clone(), drawn.lengths),
         None => {
-            let objects = build::objects(molecule, style, shaders.assignment());
-            (Some(objects.list), objects.materials, objects.lengths)
+            let objects = build::objects(&scene.molecule, style, shaders.assignment());
+            let median = (!objects.list.atoms.is_empty()).then_some(objects.lengths.median_radius);
+            (Some(objects.list), objects.materials, Lengths::of_scene(scene, &style.geometry, median))
         }
     };
     let materials = build::materials(style, &used, camera.exposure_factor(), &lengths, height_px);
-    let lighting = LightingProvider::new(style.lights.clone(), molecule.bounding_sphere(), lengths);
+    let lighting = LightingProvider::new(style.lights.clone(), scene.bounding_sphere(), lengths);
     Resolved { list, materials, drawn: Drawn { shaders, key, used, lengths, lighting, height_px } }
 }
 
@@ -373,7 +371,7 @@ fn frame_input<T>(
     draw(&FrameInput {
         camera: &camera,
         lighting: &lighting,
-        bounds: content.scene.molecule.bounding_sphere(),
+        bounds: content.scene.bounding_sphere(),
         background: content.camera.background(request.transparent),
         size: request.size,
         samples: request.samples,

@@ -28,6 +28,12 @@ impl Name {
         std::str::from_utf8(&self.0[..length]).unwrap_or_default()
     }
 
+    /// The label in the lower 48 bits of a number: equal for equal labels.
+    pub const fn bits(self) -> u64 {
+        let [a, b, c, d, e, f] = self.0;
+        u64::from_le_bytes([a, b, c, d, e, f, 0, 0])
+    }
+
     /// The label in upper case.
     pub fn to_uppercase(self) -> Self {
         Self(self.0.map(|byte| byte.to_ascii_uppercase()))

@@ -49,7 +49,7 @@ impl Live {
         let sources = Sources {
             style_file: Some(style.clone()),
             style: Box::new(move || load_style(&style)),
-            scene_file: Some(scene.clone()),
+            scene_files: vec![scene.clone()],
             scene: Box::new(move || Scene::load_with(&scene, &LoadOptions::default())),
             shader_folder: Some(folder.join("shaders")),
         };

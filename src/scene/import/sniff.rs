@@ -16,6 +16,18 @@ pub enum Format {
     Unknown,
 }
 
+impl Format {
+    /// What people call it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Pdb => "PDB",
+            Self::Xyz => "XYZ",
+            Self::Foreign(what) => what,
+            Self::Unknown => "unknown",
+        }
+    }
+}
+
 /// Bytes at the start that are looked at.
 const HEAD: usize = 1 << 16;
 
