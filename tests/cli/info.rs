@@ -4,13 +4,14 @@ use serde_json::{Value as Json, json};
 
 use super::rig::Folder;
 
-/// Two waters, an amino acid's nitrogen and an ion, in two chains.
+/// Two waters, an amino acid's nitrogen, an ion and two atoms of a ligand, in two chains; none is bonded.
 const PDB: &str = "\
 ATOM      1  N   ALA A   1       0.000   0.000   0.000  1.00 20.00           N
 HETATM    2  O   HOH A 101      10.000   0.000   0.000  1.00 30.00           O
 HETATM    3  O   HOH B 102      20.000   0.000   0.000  1.00 40.50           O
 HETATM    4 ZN    ZN B 103      30.000   0.000   0.000  1.00 50.00          ZN
 HETATM    5  C1  LIG B 104      40.000   0.000   0.000  1.00  1.00           C
+HETATM    6  C2  LIG B 104      43.000   0.000   0.000  1.00  1.00           C
 END
 ";
 
@@ -24,27 +25,27 @@ fn a_molecule_is_counted() {
     let folder = Folder::new("info");
     folder.write("m.pdb", PDB);
     let facts = json_of(&folder, "info m.pdb --json");
-    assert_eq!((&facts["atoms"], &facts["bonds"], &facts["triangles"]), (&json!(5), &json!(0), &json!(0)));
+    assert_eq!((&facts["atoms"], &facts["bonds"], &facts["triangles"]), (&json!(6), &json!(0), &json!(0)));
     assert_eq!(facts["types"], json!(["atom"]));
     assert_eq!(facts["files"][0]["format"], "PDB");
-    assert_eq!(facts["elements"], json!({ "O": 2, "C": 1, "N": 1, "Zn": 1 }));
+    assert_eq!(facts["elements"], json!({ "C": 2, "O": 2, "N": 1, "Zn": 1 }));
     assert_eq!(facts["residues"]["water"], json!({ "residues": 2, "atoms": 2 }));
-    assert_eq!(facts["ligands"], json!({ "LIG": { "residues": 1, "atoms": 1 } }));
+    assert_eq!(facts["ligands"], json!({ "LIG": { "residues": 1, "atoms": 2 } }));
     assert_eq!(facts["models"], json!([1]));
-    assert_eq!(facts["chains"][1], json!({ "id": "B", "file": "m.pdb", "residues": 3, "atoms": 3 }));
+    assert_eq!(facts["chains"][1], json!({ "id": "B", "file": "m.pdb", "residues": 3, "atoms": 4 }));
     // Nitrogen's radius on the left, carbon's on the right.
     let bound = |end: &str| facts["bounds"][end][0].as_f64().unwrap();
-    assert!((bound("min") + 1.55).abs() < 0.2 && (bound("max") - 41.7).abs() < 0.1, "{facts}");
+    assert!((bound("min") + 1.55).abs() < 0.2 && (bound("max") - 44.7).abs() < 0.1, "{facts}");
 
     let text = folder.run("info m.pdb").done().out;
     for line in [
         "files      m.pdb  PDB",
         "types      atom",
-        "atoms      5",
-        "residues   protein  1 residue   1 atom",
+        "atoms      6",
+        "residues   protein   1 residue   1 atom",
         "           water    2 residues  2 atoms",
         "chains     A  2 residues  2 atoms",
-        "elements   O 2, C 1, N 1, Zn 1",
+        "elements   C 2, O 2, N 1, Zn 1",
         "models     1",
     ] {
         assert!(text.lines().any(|found| found.trim_end() == line), "{line}\n{text}");
@@ -57,10 +58,10 @@ fn selectors_can_be_pasted_and_pick_what_they_say() {
     folder.write("m.pdb", PDB);
     let lines = folder.run("info m.pdb --selectors").done().out;
     for line in [
-        "\"atom\": \"...\", // 5 atoms",
-        "\"atom[chain=B]\": \"...\", // 3 atoms",
+        "\"atom\": \"...\", // 6 atoms",
+        "\"atom[chain=B]\": \"...\", // 4 atoms",
         "\"atom[kind=water]\":   \"...\", // 2 residues, 2 atoms",
-        "\"atom[residue=LIG]\": \"...\", // 1 residue, 1 atom",
+        "\"atom[residue=LIG]\": \"...\", // 1 residue, 2 atoms",
         "\"atom[element=Zn]\": \"...\", // 1 atom",
     ] {
         let squeezed = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -107,7 +108,7 @@ fn several_scenes_are_one() {
 #[test]
 fn several_scenes_are_drawn_at_once() {
     let Some(folder) = Folder::with_adapter("drawn-together") else { return };
-    folder.write("a.xyz", "1\n\nC 0 0 0\n").write("b.xyz", "2\n\nO 9 0 0\nO nan 0 0\nO 20 0 0\n".replace("2\n", "3\n"));
+    folder.write("a.xyz", "1\n\nC 0 0 0\n").write("b.xyz", "3\n\nO 9 0 0\nO nan 0 0\nO 20 0 0\n");
     let outcome = folder.run("render a.xyz b.xyz -o o.png --size 8x8 --samples 1 --json").done();
     let line: Json = serde_json::from_str(&outcome.out).unwrap();
     assert_eq!((&line["spheres"], &line["scenes"]), (&json!(3), &json!(["a.xyz", "b.xyz"])));
