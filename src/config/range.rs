@@ -68,7 +68,7 @@ fn leading_number(text: &str) -> Option<(f64, &str)> {
     Some((number.clamp(f64::MIN, f64::MAX), &text[end..]))
 }
 
-/// A set of ranges, each with a number: a segment tree over their ends [deBerg2008 §10.3].
+/// A set of ranges, each with a number: a segment tree over their ends [DeBerg2008 §10.3].
 #[derive(Debug, Clone, Default)]
 pub(super) struct RangeSet {
     /// All ends, sorted, each once. They and the gaps beside and between them are the tree's leaves.
