@@ -79,7 +79,7 @@ fn sources(style: &Path, scene: Option<PathBuf>) -> Sources {
                 Scene::load_with(&path, &LoadOptions::default())
             }
         }),
-        scene_file: file,
+        scene_files: file.into_iter().collect(),
         shader_folder: None,
     }
 }

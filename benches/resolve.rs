@@ -9,7 +9,7 @@ use std::time::Instant;
 use restyle::config::{Attribute, Catalog, ObjectKind, Source, Style, load};
 use restyle::engine;
 use restyle::providers::{ShaderProvider, unmatched};
-use restyle::scene::{Element, FileBond, Molecule, MoleculeBuilder, Name, NewAtom, Report};
+use restyle::scene::{Element, FileBond, MoleculeBuilder, Name, NewAtom, Report, Scene};
 
 const ROUNDS: usize = 15;
 const SELECTORS: [usize; 2] = [1_000, 10_000];
@@ -42,7 +42,7 @@ fn letters(mut number: usize, count: usize) -> String {
     text
 }
 
-fn molecule(kind: &str, num_atoms: usize) -> Molecule {
+fn scene(kind: &str, num_atoms: usize) -> Scene {
     let mut builder = MoleculeBuilder::default();
     let elements = [b"C", b"N", b"O", b"S"].map(|symbol| Element::from_symbol(symbol).unwrap_or_default());
     for i in 0..num_atoms {
@@ -68,7 +68,9 @@ fn molecule(kind: &str, num_atoms: usize) -> Molecule {
         });
     }
     let bonds: Vec<FileBond> = (1..num_atoms as u32).map(|b| FileBond { a: b - 1, b, order: 1 }).collect();
-    builder.finish(&bonds, &mut Report::default()).expect("a molecule has atoms")
+    let mut scene = Scene::from_bytes("bench.xyz", b"1\n\nC 0 0 0\n").expect("an atom");
+    scene.molecule = builder.finish(&bonds, &mut Report::default()).expect("a molecule has atoms");
+    scene
 }
 
 fn selector(kind: &str, i: usize) -> String {
@@ -109,7 +111,7 @@ fn style_of(text: &str, catalog: &Catalog<'_>) -> Style {
 /// One molecule in one style, and the milliseconds of each round.
 struct Cell {
     label: String,
-    molecule: Molecule,
+    scene: Scene,
     style: Style,
     /// The same rules; one shader has another property.
     recolored: Style,
@@ -129,7 +131,7 @@ fn resolving(catalog: &Catalog<'_>) {
                     reordered.mapping.rotate_left(1);
                     cells.push(Cell {
                         label: format!("{of_molecule} | {of_style} | {num_atoms} | {num_selectors}"),
-                        molecule: molecule(of_molecule, num_atoms),
+                        scene: scene(of_molecule, num_atoms),
                         style: style_of(&style_text(of_style, num_selectors, 4), catalog),
                         recolored: style_of(&style_text(of_style, num_selectors, 5), catalog),
                         reordered,
@@ -141,10 +143,10 @@ fn resolving(catalog: &Catalog<'_>) {
     }
     for round in 0..=ROUNDS {
         for cell in &mut cells {
-            let (whole, provider) = timed(|| ShaderProvider::new(&cell.molecule, &cell.style));
-            let (again, other) = timed(|| provider.with_style(&cell.reordered));
-            let (property, same) = timed(|| provider.with_style(&cell.recolored));
-            let (check, _) = timed(|| unmatched(&cell.style, &cell.molecule));
+            let (whole, provider) = timed(|| ShaderProvider::new(&cell.scene, &cell.style));
+            let (again, other) = timed(|| provider.with_style(&cell.scene, &cell.reordered));
+            let (property, same) = timed(|| provider.with_style(&cell.scene, &cell.recolored));
+            let (check, _) = timed(|| unmatched(&cell.style, &cell.scene));
             assert_eq!(provider.assignment(), same.assignment());
             drop(other);
             if round > 0 {
@@ -169,7 +171,7 @@ fn resolving(catalog: &Catalog<'_>) {
 
 /// The plain definition, asked for each atom, as a measure for the above.
 fn walking(catalog: &Catalog<'_>) {
-    let molecule = molecule("protein", ATOMS[0]);
+    let molecule = scene("protein", ATOMS[0]).molecule;
     println!("\n| walking all rules for each of {} atoms | selectors | ms |\n|---|---:|---:|", ATOMS[0]);
     for kind in STYLES {
         let style = style_of(&style_text(kind, SELECTORS[0], 4), catalog);

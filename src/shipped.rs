@@ -1,4 +1,4 @@
-//! The looks and molecules that are part of the program, so that their names work from any folder.
+//! The looks, molecules and meshes that are part of the program, so that their names work from any folder.
 
 /// A file that the program carries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,6 +44,12 @@ pub const MOLECULES: &[Shipped] = shipped!(
     "nanotube"."xyz",
     "alpha_helix"."pdb",
 );
+
+/// The meshes.
+pub const MESHES: &[Shipped] = shipped!("meshes",);
+
+/// Everything that can be a scene. No name is in two of them.
+pub const SCENES: [&[Shipped]; 2] = [MOLECULES, MESHES];
 
 /// The shipped file of this name.
 pub fn find(among: &'static [Shipped], name: &str) -> Option<&'static Shipped> {

@@ -39,9 +39,9 @@ pub(super) struct Args {
     /// Style files or names of shipped looks
     #[arg(required = true, value_name = "STYLE")]
     styles: Vec<String>,
-    /// Also look at each style with this molecule: a file or the name of a shipped one
+    /// Also look at each style with this scene: a file or the name of a shipped one (repeatable, all drawn at once)
     #[arg(long)]
-    scene: Option<String>,
+    scene: Vec<String>,
     /// Say what each style comes to: every value with its file, line and column
     #[arg(long)]
     explain: bool,
@@ -67,13 +67,12 @@ struct Findings {
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let options = LoadOptions::default();
-    let scene = match &args.scene {
-        Some(name) => {
-            let scene = inputs::load_scene(name, &options)?.scene;
-            inputs::scene_warnings(&scene, name).into_iter().for_each(tell);
-            Some(scene)
-        }
-        None => None,
+    let scene = if args.scene.is_empty() {
+        None
+    } else {
+        let scene = inputs::load_scenes(&args.scene, &options)?.scene;
+        inputs::scene_warnings(&scene, &args.scene).into_iter().for_each(tell);
+        Some(scene)
     };
     let mut documents = Vec::new();
     let mut all_ok = true;
@@ -99,7 +98,7 @@ fn check(name: &str, scene: Option<&Scene>) -> Findings {
     };
     if let Ok(style) = &style {
         warnings.extend(match scene {
-            Some(scene) => lint::lint_with(style, &scene.molecule),
+            Some(scene) => lint::lint_with(style, scene),
             None => lint::lint(style),
         });
         let order = |place: &Place| (style.texts.position(&place.file), place.start);

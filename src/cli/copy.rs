@@ -18,7 +18,7 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let Some(look) = shipped::find(shipped::LOOKS, &args.look) else {
-        return Err(inputs::unknown("look", &args.look, shipped::LOOKS));
+        return Err(inputs::unknown("look", &args.look, &[shipped::LOOKS]));
     };
     let file = args.file.display();
     if args.file.exists() {

@@ -1,4 +1,4 @@
-//! `restyle gallery`: every look on every molecule, as PNG files and one contact sheet that opens from disk.
+//! `restyle gallery`: every look on every scene, as PNG files and one contact sheet that opens from disk.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -13,11 +13,11 @@ use super::{Failure, answer, print_message};
 use crate::config::Style;
 use crate::engine::{Engine, Gpu, Request};
 use crate::scene::{LoadOptions, Scene, write_whole};
-use crate::shipped::{LOOKS, MOLECULES};
+use crate::shipped::{LOOKS, SCENES, Shipped};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// Molecule files or names of shipped molecules; all shipped ones by default
+    /// Files of molecules or meshes, or names of shipped ones; all shipped ones by default
     scenes: Vec<String>,
     /// Style files or names of looks (repeatable); all shipped ones by default
     #[arg(short, long)]
@@ -42,11 +42,12 @@ struct Named<T> {
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let start = Instant::now();
-    let or_all = |given: &[String], all: &[crate::shipped::Shipped]| -> Vec<String> {
-        if given.is_empty() { all.iter().map(|shipped| shipped.name.to_owned()).collect() } else { given.to_vec() }
+    let or_all = |given: &[String], all: &[&[Shipped]]| -> Vec<String> {
+        let all = all.iter().copied().flatten().map(|shipped| shipped.name.to_owned());
+        if given.is_empty() { all.collect() } else { given.to_vec() }
     };
-    let scene_names = or_all(&args.scenes, MOLECULES);
-    let style_names = or_all(&args.style, LOOKS);
+    let scene_names = or_all(&args.scenes, &SCENES);
+    let style_names = or_all(&args.style, &[LOOKS]);
 
     // All that can be wrong with the input is found before anything is written.
     let options = LoadOptions::default();
@@ -56,12 +57,12 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         styles.push(Named { label: stem.clone(), stem, value: inputs::load_style(name)? });
     }
     let mut scenes: Vec<Named<Scene>> = Vec::new();
-    // What every cell of a look or a molecule shares is told once.
+    // What every cell of a look or a scene shares is told once.
     let mut told: Vec<String> = Vec::new();
     for name in &scene_names {
         let stem = free_stem(name, scenes.iter().map(|scene| scene.stem.as_str()));
-        let scene = inputs::load_scene(name, &options)?.scene;
-        told.extend(inputs::scene_warnings(&scene, name).into_iter().map(clean));
+        let scene = inputs::load_scene(name, &options)?;
+        told.extend(inputs::scene_warnings(&scene, std::slice::from_ref(name)).into_iter().map(clean));
         scenes.push(Named { label: stem.replace('_', " "), stem, value: scene });
     }
     for style in &styles {
@@ -158,14 +159,8 @@ fn contact_sheet(scenes: &[Named<Scene>], styles: &[Named<Style>], args: &Args, 
     }
     page.push_str("</tr></thead>\n<tbody>\n");
     for scene in scenes {
-        let molecule = &scene.value.molecule;
-        let _ = write!(
-            page,
-            "<tr><th scope=\"row\">{}<small>{} atoms<br>{} bonds</small></th>",
-            escaped(&scene.label),
-            molecule.atoms.len(),
-            molecule.bonds.len()
-        );
+        let label = escaped(&scene.label);
+        let _ = write!(page, "<tr><th scope=\"row\">{label}<small>{}</small></th>", counts(&scene.value));
         for style in styles {
             let file = escaped(&file_name(scene, style));
             let alt = escaped(&format!("{} in the look {}", scene.label, style.label));
@@ -178,6 +173,19 @@ fn contact_sheet(scenes: &[Named<Scene>], styles: &[Named<Style>], args: &Args, 
     }
     page.push_str("</tbody>\n</table>\n</html>\n");
     page
+}
+
+/// How much a scene holds, in two lines for each type of objects.
+fn counts(scene: &Scene) -> String {
+    let (molecule, assembly) = (&scene.molecule, &scene.assembly);
+    let mut lines = Vec::new();
+    if !molecule.atoms.is_empty() {
+        lines.extend([format!("{} atoms", molecule.atoms.len()), format!("{} bonds", molecule.bonds.len())]);
+    }
+    if !assembly.is_empty() {
+        lines.extend([format!("{} parts", assembly.parts.len()), format!("{} triangles", assembly.num_triangles())]);
+    }
+    lines.join("<br>")
 }
 
 fn escaped(text: &str) -> String {

@@ -36,7 +36,7 @@ pub(crate) fn parse_model(text: &str) -> Result<ModelChoice, String> {
     }
 }
 
-/// A scene with the time that loading it took.
+/// One scene of all files that are named, with the time that loading it took.
 pub(crate) struct Loaded {
     pub(crate) scene: Scene,
     pub(crate) ms: f64,
@@ -62,9 +62,9 @@ impl Input {
 }
 
 /// Finds what a name on the command line means: a file, or something shipped.
-fn find(what: &str, name: &str, among: &'static [Shipped]) -> Result<Input, Failure> {
+fn find(what: &str, name: &str, among: &[&'static [Shipped]]) -> Result<Input, Failure> {
     let path = Path::new(name);
-    match shipped::find(among, name) {
+    match among.iter().find_map(|shipped| shipped::find(shipped, name)) {
         Some(shipped) if !is_shadowed(path) => Ok(Input::Shipped(shipped)),
         None if looks_like_a_name(path) => Err(unknown(what, name, among)),
         _ => Ok(Input::File(path.to_owned())),
@@ -73,18 +73,18 @@ fn find(what: &str, name: &str, among: &'static [Shipped]) -> Result<Input, Fail
 
 /// What a scene's name means.
 pub(crate) fn find_scene(name: &str) -> Result<Input, Failure> {
-    find("molecule", name, shipped::MOLECULES)
+    find("molecule or mesh", name, &shipped::SCENES)
 }
 
 /// What a style's name means.
 pub(crate) fn find_style(name: &str) -> Result<Input, Failure> {
-    find("look", name, shipped::LOOKS)
+    find("look", name, &[shipped::LOOKS])
 }
 
 /// Reads a scene.
 pub(crate) fn read_scene(input: &Input, options: &LoadOptions) -> Result<Scene, SceneError> {
     match input {
-        Input::Shipped(molecule) => Scene::from_bytes_with(molecule.file, molecule.bytes, options),
+        Input::Shipped(shipped) => Scene::from_bytes_with(shipped.file, shipped.bytes, options),
         Input::File(path) => Scene::load_with(path, options),
     }
 }
@@ -118,20 +118,37 @@ pub(crate) fn follow_style(input: &Input) -> Result<Style, Mistakes> {
     }
 }
 
-/// Reads a scene, again and again.
-pub(crate) fn follow_scene(input: &Input, options: &LoadOptions) -> Result<Scene, SceneError> {
-    match no_file_to_follow(input) {
+/// Reads scenes into one, again and again.
+pub(crate) fn follow_scenes(inputs: &[Input], options: &LoadOptions) -> Result<Scene, SceneError> {
+    let follow = |input: &Input| match no_file_to_follow(input) {
         Some((path, reason)) => {
             Err(SceneError::Unsupported { file: path.display().to_string(), what: reason.to_owned() })
         }
         None => read_scene(input, options),
-    }
+    };
+    let scenes: Vec<Scene> = inputs.iter().map(follow).collect::<Result<_, _>>()?;
+    Ok(Scene::join(scenes).expect("the command line has at least one scene"))
 }
 
-/// Loads a file, or a shipped molecule by its name.
-pub(crate) fn load_scene(name: &str, options: &LoadOptions) -> Result<Loaded, Failure> {
+/// Loads a file, or a shipped molecule or mesh by its name.
+pub(crate) fn load_scene(name: &str, options: &LoadOptions) -> Result<Scene, Failure> {
+    read_scene(&find_scene(name)?, options).map_err(Failure::input)
+}
+
+/// Loads all of them into one scene. What is wrong with any is said.
+pub(crate) fn load_scenes(names: &[String], options: &LoadOptions) -> Result<Loaded, Failure> {
     let start = Instant::now();
-    let scene = read_scene(&find_scene(name)?, options).map_err(Failure::input)?;
+    let (mut scenes, mut messages) = (Vec::new(), Vec::new());
+    for name in names {
+        match load_scene(name, options) {
+            Ok(scene) => scenes.push(scene),
+            Err(failure) => messages.push(failure.message),
+        }
+    }
+    if !messages.is_empty() {
+        return Err(Failure::input(messages.join("\n")));
+    }
+    let scene = Scene::join(scenes).expect("the command line has at least one scene");
     Ok(Loaded { scene, ms: start.elapsed().as_secs_f64() * 1e3 })
 }
 
@@ -147,7 +164,7 @@ pub(crate) fn check_style(name: &str) -> Result<Style, Mistakes> {
         Ok(input) if input.file().is_none_or(|path| path.exists() || path.is_symlink()) => read_style(&input),
         // Of a file that is not there, the looks that are may be meant.
         _ => {
-            let reason = unknown_reason("look", name, shipped::LOOKS);
+            let reason = unknown_reason("look", name, &[shipped::LOOKS]);
             Err(Mistakes::one(Place::of_file(name), Problem::Unreadable(reason)))
         }
     }
@@ -178,10 +195,10 @@ impl Loader for FilesAndLooks {
     }
 }
 
-/// Prints what a style says that this version passes over, and what a scene's file had mended.
-pub(crate) fn print_warnings(style: &Style, scene: &Scene, scene_name: &str) {
+/// Prints what a style says that this version passes over, and what the scenes' files had mended.
+pub(crate) fn print_warnings(style: &Style, scene: &Scene, scene_names: &[String]) {
     style_warnings(style).iter().for_each(|warning| print_message(warning));
-    scene_warnings(scene, scene_name).into_iter().for_each(tell);
+    scene_warnings(scene, scene_names).into_iter().for_each(tell);
 }
 
 /// What a style asks for and does not get, clean, each with its source line where there is a file to mend.
@@ -190,37 +207,35 @@ pub(crate) fn style_warnings(style: &Style) -> Vec<String> {
     messages::of_warnings(&style.warnings, style.unlisted_warnings, texts)
 }
 
-/// What a scene's file had mended, one line a kind.
-pub(crate) fn scene_warnings(scene: &Scene, scene_name: &str) -> Vec<String> {
-    let of_file = |file: &SceneFile| {
-        let name = if scene.files.len() == 1 { scene_name } else { &file.name };
-        let lines: Vec<String> =
-            file.report.to_string().lines().map(|line| format!("{name}: warning: {line}")).collect();
-        lines
+/// What the files of a scene had mended, one line a kind; `names` are what the command line calls them.
+pub(crate) fn scene_warnings(scene: &Scene, names: &[String]) -> Vec<String> {
+    let of_file = |(file, name): (&SceneFile, &String)| {
+        let report = file.report.to_string();
+        report.lines().map(|line| format!("{name}: warning: {line}")).collect::<Vec<_>>()
     };
-    scene.files.iter().flat_map(of_file).collect()
+    scene.files.iter().zip(names).flat_map(of_file).collect()
 }
 
-/// A look or molecule that is not shipped, with those that are.
-pub(crate) fn unknown(what: &str, name: &str, among: &'static [Shipped]) -> Failure {
+/// A look, molecule or mesh that is not shipped, with those that are.
+pub(crate) fn unknown(what: &str, name: &str, among: &[&'static [Shipped]]) -> Failure {
     // A name that would not show as it is, is quoted.
     let is_plain = !name.is_empty() && !name.contains(char::is_control);
     let shown = if is_plain { name.to_owned() } else { format!("{name:?}") };
     Failure::input(format!("{shown}: {}", unknown_reason(what, name, among)))
 }
 
-fn unknown_reason(what: &str, name: &str, among: &'static [Shipped]) -> String {
+fn unknown_reason(what: &str, name: &str, among: &[&'static [Shipped]]) -> String {
     // The longest name of a file is longer than any that is worth comparing.
     let word = if name.len() > 64 { "" } else { name };
     let word = word.rsplit(['/', '\\']).next().unwrap_or(word).to_lowercase();
     let word = word.strip_suffix(".json").unwrap_or(&word);
-    let nearest = among
+    let names: Vec<&str> = among.iter().copied().flatten().map(|shipped| shipped.name).collect();
+    let nearest = names
         .iter()
-        .map(|shipped| (strsim::damerau_levenshtein(shipped.name, word), shipped.name))
+        .map(|name| (strsim::damerau_levenshtein(name, word), name))
         .min()
         .filter(|(distance, nearest)| *distance <= nearest.len() / 2);
     let hint = nearest.map_or(String::new(), |(_, nearest)| format!("did you mean {nearest:?}? "));
-    let names: Vec<&str> = among.iter().map(|shipped| shipped.name).collect();
     format!("no such file, and no {what} of this name; {hint}shipped: {}", names.join(", "))
 }
 

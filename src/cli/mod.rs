@@ -3,6 +3,7 @@
 mod check;
 mod copy;
 mod gallery;
+mod info;
 mod inputs;
 mod manual;
 mod messages;
@@ -20,7 +21,7 @@ use crate::config::Mistakes;
 use crate::engine::GpuError;
 use messages::clean;
 
-/// Draws molecules as a JSON style file says.
+/// Draws molecules and meshes as a JSON style file says.
 #[derive(Debug, Parser)]
 #[command(name = "restyle", version, disable_help_subcommand = true)]
 struct Cli {
@@ -32,10 +33,12 @@ struct Cli {
 enum Command {
     /// Draw one still
     Render(render::Args),
-    /// Draw every look on every molecule, with a contact sheet
+    /// Draw every look on every scene, with a contact sheet
     Gallery(gallery::Args),
     /// Say all that is wrong with style files, and what they mean
     Check(check::Args),
+    /// Say what scenes hold: atoms, residues, parts, materials, bounds, and selectors for them
+    Info(info::Args),
     /// Copy a shipped look to a file, to start from
     Copy(copy::Args),
     /// Print the JSON Schema of style files, for editors
@@ -96,6 +99,7 @@ pub fn run() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Gallery(args) => gallery::run(&args),
         Command::Check(args) => check::run(&args),
+        Command::Info(args) => info::run(&args),
         Command::Copy(args) => copy::run(&args),
         Command::Schema(args) => schema::run(&args),
     };

@@ -1,4 +1,4 @@
-//! `restyle render SCENE -s STYLE -o OUT.png`: one still, its AOVs, its timings.
+//! `restyle render SCENE... -s STYLE -o OUT.png`: one still, its AOVs, its timings.
 
 use std::io;
 use std::ops::ControlFlow;
@@ -10,12 +10,13 @@ use super::inputs::{self, Size};
 use super::{Failure, answer, inputs::Loaded, tell};
 use crate::config::Style;
 use crate::engine::{Engine, Gpu, GpuError, MAX_SAMPLES, Request, TileError};
-use crate::scene::{AovName, LoadOptions, ModelChoice, RowsHeader, write_png_rows};
+use crate::scene::{AovName, LoadOptions, ModelChoice, RowsHeader, Scene, write_png_rows};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// A molecule file (PDB, XYZ) or the name of a shipped molecule
-    scene: String,
+    /// A file of molecules or meshes, or the name of a shipped one; several are drawn at once, each where its file has it
+    #[arg(required = true, value_name = "SCENE")]
+    scenes: Vec<String>,
     /// A style file or the name of a shipped look
     #[arg(short, long, default_value = "education")]
     style: String,
@@ -37,6 +38,9 @@ pub(super) struct Args {
     /// Which model of the file: its number, or all; the first by default
     #[arg(long, value_parser = inputs::parse_model)]
     model: Option<ModelChoice>,
+    /// Which biological assembly of the file, by its id; the coordinates as they were deposited by default
+    #[arg(long, value_name = "ID")]
+    assembly: Option<String>,
     /// Also time this many warm frames
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=10_000))]
     frames: u32,
@@ -56,9 +60,9 @@ pub(super) struct Args {
 }
 
 impl Args {
-    /// The scene's file or name.
-    pub(super) fn scene(&self) -> &str {
-        &self.scene
+    /// The files or names of the scenes.
+    pub(super) fn scenes(&self) -> &[String] {
+        &self.scenes
     }
 
     /// The style's file or name.
@@ -71,9 +75,9 @@ impl Args {
         self.json
     }
 
-    /// How the scene is read.
+    /// How the scenes are read.
     pub(super) fn load_options(&self) -> LoadOptions {
-        LoadOptions { model: self.model.unwrap_or(ModelChoice::First), assembly: None }
+        LoadOptions { model: self.model.unwrap_or(ModelChoice::First), assembly: self.assembly.clone() }
     }
 
     /// The files to write.
@@ -120,7 +124,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         return Err(Failure::usage("nothing to write: give -o OUT.png, --aov NAME=FILE.exr or --json"));
     }
     args.outputs().try_for_each(|output| check_writable(&output))?;
-    inputs::check_outputs(args.outputs(), &[("scene", Path::new(&args.scene)), ("style", Path::new(&args.style))])?;
+    let scenes = args.scenes.iter().map(|scene| ("scene", Path::new(scene)));
+    let given: Vec<_> = scenes.chain([("style", Path::new(&args.style))]).collect();
+    inputs::check_outputs(args.outputs(), &given)?;
     if args.watch {
         return super::watch::run(args);
     }
@@ -133,15 +139,14 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             (Gpu::open(), start.elapsed().as_secs_f64() * 1e3)
         });
         let style: Result<Style, Failure> = inputs::load_style(&args.style);
-        let loaded: Result<Loaded, Failure> = inputs::load_scene(&args.scene, &options);
+        let loaded: Result<Loaded, Failure> = inputs::load_scenes(&args.scenes, &options);
         (gpu.join(), loaded, style)
     });
     let (style, loaded) = (style?, loaded?);
-    let bases: Vec<_> = style.files.iter().map(|file| ("style's base", file.as_path())).collect();
-    inputs::check_outputs(args.outputs(), &bases)?;
+    inputs::check_outputs(args.outputs(), &files_read(&style, &loaded.scene))?;
     let (gpu, device_ms) = gpu.map_err(|_| Failure::from(GpuError::NoAdapter))?;
     let gpu = Arc::new(gpu?);
-    inputs::print_warnings(&style, &loaded.scene, &args.scene);
+    inputs::print_warnings(&style, &loaded.scene, &args.scenes);
     let mut engine = Engine::new(gpu, loaded.scene, style);
     for limit in engine.limits_exceeded() {
         tell(format!("{}: warning: {limit}", args.style));
@@ -184,6 +189,13 @@ fn turn(engine: &mut Engine, args: &Args, count: u32) -> Result<(), Failure> {
         answer(line)?;
     }
     Ok(())
+}
+
+/// The files that a style and a scene name: what is on the command line is known without them.
+pub(super) fn files_read<'a>(style: &'a Style, scene: &'a Scene) -> Vec<(&'static str, &'a Path)> {
+    let bases = style.files.iter().map(|file| ("style's base", file.as_path()));
+    let side_files = scene.files.iter().flat_map(|file| &file.side_files);
+    bases.chain(side_files.map(|file| ("scene's side file", file.as_path()))).collect()
 }
 
 /// Times of one picture in milliseconds.
@@ -273,10 +285,19 @@ pub(super) fn describe(
     let targets: serde_json::Map<String, serde_json::Value> =
         engine.target_bytes().into_iter().map(|(name, bytes)| (name.to_owned(), bytes.into())).collect();
     let (info, counts) = (&engine.gpu().info, engine.counts());
-    let (atoms, bonds) =
-        engine.scene().map_or((0, 0), |scene| (scene.molecule.atoms.len(), scene.molecule.bonds.len()));
+    let counts_of = |scene: &Scene| {
+        let (molecule, assembly) = (&scene.molecule, &scene.assembly);
+        [
+            molecule.atoms.len() as u64,
+            molecule.bonds.len() as u64,
+            assembly.parts.len() as u64,
+            assembly.num_triangles(),
+        ]
+    };
+    let [atoms, bonds, parts, mesh_triangles] = engine.scene().map_or([0; 4], counts_of);
     let line = serde_json::json!({
-        "scene": args.scene,
+        "scene": args.scenes.join(", "),
+        "scenes": args.scenes,
         "style": args.style,
         "size": args.size.0,
         "samples": args.samples,
@@ -291,6 +312,8 @@ pub(super) fn describe(
         "peak_rss_mb": peak_rss_mb(),
         "atoms": atoms,
         "bonds": bonds,
+        "parts": parts,
+        "mesh_triangles": mesh_triangles,
         "spheres": counts.spheres,
         "cylinders": counts.cylinders,
         "triangles": counts.triangles,

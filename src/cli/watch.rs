@@ -1,13 +1,13 @@
 //! `restyle render --watch`: the picture again after each save, for any image viewer that follows a file.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::messages::{self, clean};
 use super::render::{self, Args, rounded};
-use super::{Failure, answer, inputs, print_message, tell};
+use super::{Failure, answer, inputs, inputs::Input, print_message, tell};
 use crate::engine::{Engine, Gpu, Part, Refusal, Reload, Sources, source_tree_shaders};
 
 /// How often an interrupt is looked for while nothing happens. Ours: a key press that takes longer feels lost.
@@ -28,8 +28,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         }
     });
 
-    let (style, scene) = (inputs::find_style(args.style())?, inputs::find_scene(args.scene())?);
-    if style.file().or(scene.file()).is_none() {
+    let style = inputs::find_style(args.style())?;
+    let scenes: Vec<Input> = args.scenes().iter().map(|name| inputs::find_scene(name)).collect::<Result<_, _>>()?;
+    let scene_files: Vec<PathBuf> = scenes.iter().filter_map(Input::file).map(Path::to_owned).collect();
+    if style.file().is_none() && scene_files.is_empty() {
         return Err(Failure::usage(
             "--watch: what is shipped never changes; start from a copy: restyle copy education mine.json",
         ));
@@ -38,8 +40,8 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let sources = Sources {
         style_file: style.file().map(Path::to_owned),
         style: Box::new(move || inputs::follow_style(&style)),
-        scene_file: scene.file().map(Path::to_owned),
-        scene: Box::new(move || inputs::follow_scene(&scene, &options)),
+        scene_files,
+        scene: Box::new(move || inputs::follow_scenes(&scenes, &options)),
         shader_folder: source_tree_shaders(),
     };
     let mut engine = Engine::live(Arc::new(Gpu::open()?), sources);
@@ -78,11 +80,11 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-fn part_name(part: Part, args: &Args) -> &str {
+fn part_name(part: Part, args: &Args) -> String {
     match part {
-        Part::Style => args.style(),
-        Part::Scene => args.scene(),
-        Part::Shaders => "shaders",
+        Part::Style => args.style().to_owned(),
+        Part::Scene => args.scenes().join(", "),
+        Part::Shaders => "shaders".to_owned(),
     }
 }
 
@@ -90,7 +92,7 @@ fn part_name(part: Part, args: &Args) -> &str {
 fn tell_warnings(engine: &Engine, args: &Args, told: &mut Vec<String>) {
     let (Some(style), Some(scene)) = (engine.style(), engine.scene()) else { return };
     let mut warnings = inputs::style_warnings(style);
-    warnings.extend(inputs::scene_warnings(scene, args.scene()).iter().map(clean));
+    warnings.extend(inputs::scene_warnings(scene, args.scenes()).iter().map(clean));
     let limits = engine.limits_exceeded();
     warnings.extend(limits.iter().map(|limit| clean(format!("{}: warning: {limit}", args.style()))));
     warnings.iter().filter(|warning| !told.contains(warning)).for_each(|warning| print_message(warning));
@@ -99,9 +101,8 @@ fn tell_warnings(engine: &Engine, args: &Args, told: &mut Vec<String>) {
 
 /// Draws and writes the picture and what else is asked for; the change was noticed at `noticed`.
 fn draw(engine: &mut Engine, args: &Args, noticed: Instant, is_interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
-    let bases: Vec<_> =
-        engine.style().map_or(&[][..], |style| &style.files[..]).iter().map(|file| ("style", file.as_path())).collect();
-    inputs::check_outputs(args.outputs(), &bases)?;
+    let read = engine.style().zip(engine.scene()).map(|(style, scene)| render::files_read(style, scene));
+    inputs::check_outputs(args.outputs(), &read.unwrap_or_default())?;
     let picture = render::draw(engine, args, is_interrupted)?;
     render::write_aovs(engine, args)?;
     let total_ms = noticed.elapsed().as_secs_f64() * 1e3;

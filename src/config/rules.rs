@@ -1,23 +1,24 @@
 //! An index over the rules of a style: which rule decides about an object, without asking them one after the other.
 //!
-//! Each attribute that rules ask for has its patterns, plain values and globs, each once however many rules share it. A
+//! Each attribute that rules ask for has its patterns, plain values, globs and ranges, each once however many share it. A
 //! value is matched against all of them at once (`Patterns`), which leaves the set of patterns that match it; values
 //! with equal sets are alike to this style. Rules that ask for the same attributes make a group: a tree with one level
 //! for each of its attributes, whose leaves are rules. An object follows the branches that its values match.
 //!
 //! Bounds, for n rules of any lengths and objects of v different values of an attribute:
 //! - To build: n log n, the logarithm for sorting.
-//! - Each different value: one look-up for plain patterns, and the steps of a tree of globs for globs.
-//! - Each question: a group for each set of attributes that rules ask for, 32 at the most for molecules. With plain
-//!   values alone a group is one path of at most 5 searches of log n; a value that also matches g globs makes g + 1
-//!   branches of it. Rules that cannot win any more are passed over. The worst is a style of globs of which many match
+//! - Each different value: one look-up for plain patterns, the steps of a tree of globs for globs, and log n for ranges.
+//! - Each question: a group for each set of attributes that rules ask for. With plain values alone a group is one path of
+//!   a search of log n for each of its attributes; a value that also matches g globs or ranges makes g + 1 branches of it. Rules that cannot win any more are passed over. The worst is a style of globs of which many match
 //!   one attribute of an object and none the next: it costs, as it must, the pairs that have to be tried.
 
 use std::collections::HashMap;
-use std::ops::Range;
+use std::hash::{Hash, Hasher};
+use std::ops;
 
-use super::glob::{glob_matches, is_plain, normal};
 use super::glob_set::{GlobSet, Reached};
+use super::pattern::{Shape, ShapeKind};
+use super::range::{Range, RangeSet};
 use super::selector::{Attribute, AttributeSet, ObjectKind, Selector};
 use super::style::Style;
 
@@ -25,7 +26,24 @@ use super::style::Style;
 const NONE: u32 = u32::MAX;
 
 /// The values of an object, or of many that this style cannot tell apart: for each attribute what its value matches.
-pub type MatchedValues = [Matched; Attribute::ALL.len()];
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct MatchedValues([Matched; Attribute::ALL.len()]);
+
+impl MatchedValues {
+    /// Says what the value of an attribute matches.
+    pub fn set(&mut self, attribute: Attribute, matched: Matched) {
+        self.0[attribute as usize] = matched;
+    }
+}
+
+/// Two at a time: these are hashed once for each class of objects.
+impl Hash for MatchedValues {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        let (pairs, rest) = self.0.as_chunks::<2>();
+        pairs.iter().for_each(|[a, b]| state.write_u64(u64::from(a.0) << 32 | u64::from(b.0)));
+        rest.iter().for_each(|one| state.write_u32(one.0));
+    }
+}
 
 /// What a value of an attribute matches: a number for each set of patterns. By default, nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -58,7 +76,7 @@ struct Group {
 /// Some rules of a group whose first patterns are equal.
 #[derive(Debug, Clone)]
 struct Node {
-    branches: Range<u32>,
+    branches: ops::Range<u32>,
     /// The one among them that wins over the others.
     first: u32,
 }
@@ -161,14 +179,14 @@ impl RuleIndex {
             *first = self.nodes[node as usize].first;
             return;
         };
-        for next in self.branches(node, object[*attribute as usize]) {
+        for next in self.branches(node, object.0[*attribute as usize]) {
             self.search(next, attributes, object, first);
         }
     }
 
     /// The branches of a node that a value matches: the shorter list is gone through, the longer one searched.
     fn branches(&self, node: u32, matched: Matched) -> impl Iterator<Item = u32> {
-        let Range { start, end } = self.nodes[node as usize].branches;
+        let ops::Range { start, end } = self.nodes[node as usize].branches;
         let (own, set) = (&self.branch_patterns[start as usize..end as usize], &*self.sets[matched.0 as usize]);
         let own_is_shorter = own.len() < set.len();
         let (shorter, longer) = if own_is_shorter { (own, set) } else { (set, own) };
@@ -183,7 +201,7 @@ impl RuleIndex {
         // Leaves below each node that no object reached yet: where there are none, nothing is left to find.
         let mut unreached = vec![0; self.nodes.len()];
         for node in (0..self.nodes.len()).rev() {
-            let Range { start, end } = self.nodes[node].branches;
+            let ops::Range { start, end } = self.nodes[node].branches;
             let below = self.branch_nodes[start as usize..end as usize].iter();
             unreached[node] = if start == end { 1 } else { below.map(|next| unreached[*next as usize]).sum() };
         }
@@ -203,7 +221,7 @@ impl RuleIndex {
         let new = match attributes {
             [] => 1,
             [attribute, attributes @ ..] => self
-                .branches(node, object[*attribute as usize])
+                .branches(node, object.0[*attribute as usize])
                 .map(|next| self.reach(next, attributes, object, unreached))
                 .sum(),
         };
@@ -215,12 +233,13 @@ impl RuleIndex {
 /// The patterns of one attribute, each with a number.
 #[derive(Debug)]
 struct Patterns {
-    /// Plain values, and globs, which match their own text as well.
+    /// Plain values, and globs and ranges, which match their own text as well; no value has that of a range.
     number_of: HashMap<Box<str>, u32>,
     globs: GlobSet,
-    /// Patterns that ask for several globs at once: the globs, sorted, and the number of the whole.
+    ranges: RangeSet,
+    /// Patterns that ask for several others at once: those, sorted, and the number of the whole.
     joint: Vec<(Box<[u32]>, u32)>,
-    /// By the one of its globs that the fewest others share: which of `joint` to try where that glob matches.
+    /// By the one of its patterns that the fewest others share: which of `joint` to try where that matches.
     joint_of: HashMap<u32, Vec<u32>>,
 }
 
@@ -231,11 +250,12 @@ impl Patterns {
         let value = lower.as_deref().unwrap_or(value);
         let mut found: Vec<u32> = self.number_of.get(value).copied().into_iter().collect();
         self.globs.matches(value, reached, &mut found);
+        self.ranges.matches(value, &mut found);
         found.sort_unstable();
         found.dedup();
-        let joint = found.iter().filter_map(|glob| self.joint_of.get(glob)).flatten();
+        let joint = found.iter().filter_map(|one| self.joint_of.get(one)).flatten();
         let joint = joint.map(|i| &self.joint[*i as usize]);
-        let met = joint.filter(|(globs, _)| globs.iter().all(|glob| found.binary_search(glob).is_ok()));
+        let met = joint.filter(|(all, _)| all.iter().all(|one| found.binary_search(one).is_ok()));
         let met: Vec<u32> = met.map(|(_, number)| *number).collect();
         found.extend(met);
         found.sort_unstable();
@@ -249,46 +269,46 @@ struct PatternsBuilder {
     number_of: HashMap<Box<str>, u32>,
     joint: HashMap<Box<[u32]>, u32>,
     globs: Vec<(Box<str>, u32)>,
+    ranges: Vec<(Range, u32)>,
     num_patterns: u32,
 }
 
 impl PatternsBuilder {
     /// The number of what a selector asks of an attribute; `None` if no value can be all of that.
     fn add(&mut self, selector: &Selector, attribute: Attribute) -> Option<u32> {
-        let asked = selector.conditions().filter(|(of, _)| *of == attribute);
-        let shape = |pattern: &str| {
-            if attribute.ignores_case() { normal(&pattern.to_ascii_lowercase()) } else { normal(pattern) }
-        };
-        let mut patterns: Vec<String> = asked.map(|(_, pattern)| shape(pattern)).collect();
-        if let [only] = &patterns[..] {
+        let mut shapes: Vec<Shape> =
+            selector.patterns(attribute).map(|pattern| pattern.shape(attribute.ignores_case())).collect();
+        if let [only] = &shapes[..] {
             return Some(self.number(only));
         }
-        patterns.sort_unstable();
-        patterns.dedup();
-        // Asked twice: a plain value must be each plain value and match each glob.
-        if let Some(plain) = patterns.iter().find(|pattern| is_plain(pattern)) {
-            return patterns.iter().all(|glob| glob_matches(glob, plain)).then(|| self.number(plain));
+        shapes.sort_unstable_by(|a, b| a.text.cmp(&b.text));
+        shapes.dedup();
+        // Asked twice: a plain value must be each plain value and match each glob and range.
+        if let Some(plain) = shapes.iter().find(|shape| shape.kind == ShapeKind::Plain) {
+            return shapes.iter().all(|shape| shape.matches(&plain.text)).then(|| self.number(plain));
         }
-        let mut globs: Vec<u32> = patterns.iter().map(|glob| self.number(glob)).collect();
-        if let [only] = globs[..] {
+        let mut all: Vec<u32> = shapes.iter().map(|shape| self.number(shape)).collect();
+        if let [only] = all[..] {
             return Some(only);
         }
-        globs.sort_unstable();
+        all.sort_unstable();
         let next = self.num_patterns;
-        let number = *self.joint.entry(globs.into()).or_insert(next);
+        let number = *self.joint.entry(all.into()).or_insert(next);
         self.num_patterns += u32::from(number == next);
         Some(number)
     }
 
-    fn number(&mut self, pattern: &str) -> u32 {
-        if let Some(number) = self.number_of.get(pattern) {
+    fn number(&mut self, shape: &Shape) -> u32 {
+        if let Some(number) = self.number_of.get(shape.text.as_str()) {
             return *number;
         }
         let number = self.num_patterns;
         self.num_patterns += 1;
-        self.number_of.insert(pattern.into(), number);
-        if !is_plain(pattern) {
-            self.globs.push((pattern.into(), number));
+        self.number_of.insert(shape.text.as_str().into(), number);
+        match shape.kind {
+            ShapeKind::Plain => {}
+            ShapeKind::Glob => self.globs.push((shape.text.as_str().into(), number)),
+            ShapeKind::Range(range) => self.ranges.push((range, number)),
         }
         number
     }
@@ -296,13 +316,14 @@ impl PatternsBuilder {
     fn finish(self) -> Patterns {
         let joint: Vec<(Box<[u32]>, u32)> = self.joint.into_iter().collect();
         let mut uses: HashMap<u32, u32> = HashMap::new();
-        joint.iter().flat_map(|(globs, _)| globs).for_each(|glob| *uses.entry(*glob).or_default() += 1);
+        joint.iter().flat_map(|(all, _)| all).for_each(|one| *uses.entry(*one).or_default() += 1);
         let mut joint_of: HashMap<u32, Vec<u32>> = HashMap::new();
-        for (i, (globs, _)) in (0..).zip(&joint) {
-            if let Some(rarest) = globs.iter().min_by_key(|glob| uses[glob]) {
+        for (i, (all, _)) in (0..).zip(&joint) {
+            if let Some(rarest) = all.iter().min_by_key(|one| uses[one]) {
                 joint_of.entry(*rarest).or_default().push(i);
             }
         }
-        Patterns { number_of: self.number_of, globs: GlobSet::new(self.globs), joint, joint_of }
+        let ranges = RangeSet::new(&self.ranges);
+        Patterns { number_of: self.number_of, globs: GlobSet::new(self.globs), ranges, joint, joint_of }
     }
 }

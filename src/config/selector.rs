@@ -1,13 +1,14 @@
 //! Selectors: `atom[element=O][residue=HOH]` picks objects of a scene.
 //!
 //! A type or `*`, then any number of `[attribute=glob]`, all of which must match. `*` stands for any characters and `?`
-//! for one; case counts, except in `element`. A value that holds `]` is quoted with `"` or `'`.
+//! for one; case counts, except in `element`. Where values are numbers, `A..B`, `A..` and `..B` are ranges that hold their
+//! ends. A value that holds `]` is quoted with `"` or `'`.
 
 use std::fmt;
 
 use super::error::Problem;
-use super::glob::Glob;
 use super::hint::Hint;
+use super::pattern::{BadPattern, Pattern};
 
 /// The types of objects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -54,10 +55,14 @@ impl ObjectKind {
 
     /// What selectors can ask of this type.
     pub fn attributes(self) -> &'static [Attribute] {
-        use Attribute::{Chain, Element, File, Material, Model, Name, Part, Residue};
+        use Attribute::{
+            Altloc, BFactor, Chain, Charge, Element, File, Kind, Material, Model, Name, Node, Number, Part, Residue,
+        };
         match self {
-            Self::Mesh => &[Part, Material, File],
-            Self::Atom | Self::Connector | Self::Ribbon | Self::Surface => &[Element, Name, Residue, Chain, Model],
+            Self::Mesh => &[Part, Material, Node, File],
+            Self::Atom | Self::Connector | Self::Ribbon | Self::Surface => {
+                &[Element, Name, Residue, Number, Kind, Chain, Model, Altloc, BFactor, Charge, File]
+            }
         }
     }
 }
@@ -71,22 +76,59 @@ pub enum Attribute {
     Name,
     /// Name of the residue, such as `HOH`.
     Residue,
+    /// Number of the residue with its insertion code.
+    Number,
+    /// What the residue is, such as `protein`.
+    Kind,
     /// Name of the chain.
     Chain,
     /// Number of the model.
     Model,
+    /// Letter of the alternate location.
+    Altloc,
+    /// Temperature factor.
+    BFactor,
+    /// Charge.
+    Charge,
     /// Name of a part of a mesh.
     Part,
     /// Name of a material of a mesh.
     Material,
-    /// Name of the mesh's file.
+    /// The way to a part through the tree of its file.
+    Node,
+    /// Name of the file.
     File,
+}
+
+/// What the values of an attribute are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AttributeValues {
+    /// Texts.
+    Texts,
+    /// Whole numbers, maybe with a letter: asked for as texts, or by a range.
+    Numbers,
+    /// Measures, which nobody writes to the last digit: asked for by a range alone.
+    Measures,
 }
 
 impl Attribute {
     /// All attributes, in the order of the manual.
-    pub const ALL: [Self; 8] =
-        [Self::Element, Self::Name, Self::Residue, Self::Chain, Self::Model, Self::Part, Self::Material, Self::File];
+    pub const ALL: [Self; 14] = [
+        Self::Element,
+        Self::Name,
+        Self::Residue,
+        Self::Number,
+        Self::Kind,
+        Self::Chain,
+        Self::Model,
+        Self::Altloc,
+        Self::BFactor,
+        Self::Charge,
+        Self::Part,
+        Self::Material,
+        Self::Node,
+        Self::File,
+    ];
 
     /// The name in selectors.
     pub fn name(self) -> &'static str {
@@ -94,10 +136,16 @@ impl Attribute {
             Self::Element => "element",
             Self::Name => "name",
             Self::Residue => "residue",
+            Self::Number => "number",
+            Self::Kind => "kind",
             Self::Chain => "chain",
             Self::Model => "model",
+            Self::Altloc => "altloc",
+            Self::BFactor => "b_factor",
+            Self::Charge => "charge",
             Self::Part => "part",
             Self::Material => "material",
+            Self::Node => "node",
             Self::File => "file",
         }
     }
@@ -107,24 +155,39 @@ impl Attribute {
         self == Self::Element
     }
 
+    /// What its values are.
+    pub fn values(self) -> AttributeValues {
+        match self {
+            Self::Number | Self::Model => AttributeValues::Numbers,
+            Self::BFactor | Self::Charge => AttributeValues::Measures,
+            _ => AttributeValues::Texts,
+        }
+    }
+
     /// One sentence for the manual, the schema and the editor.
     pub fn doc(self) -> &'static str {
         match self {
             Self::Element => "Symbol of the element, such as `C` or `Mg`; upper or lower case.",
             Self::Name => "Name of the atom in its file, such as `CA`.",
             Self::Residue => "Name of the residue, such as `HOH` for water.",
+            Self::Number => "Number of the residue, such as `42`, with its insertion code, such as `100A`; or a range.",
+            Self::Kind => "What the residue is: `protein`, `nucleic`, `sugar`, `water`, `ion`, `ligand` or `other`.",
             Self::Chain => "Name of the chain, such as `A`.",
-            Self::Model => "Number of the model, such as `1`.",
-            Self::Part => "Name of a part of a mesh.",
+            Self::Model => "Number of the model, such as `1`; or a range.",
+            Self::Altloc => "Letter of the alternate location, such as `B`; empty where there is one location.",
+            Self::BFactor => "A range of temperature factors, such as `50..`.",
+            Self::Charge => "A range of charges, such as `..-0.5`.",
+            Self::Part => "Name of a part of a mesh, such as `Bolt*`.",
             Self::Material => "Name of a material of a mesh.",
-            Self::File => "Name of the mesh's file.",
+            Self::Node => "The way to a part of a mesh through the tree of its file, such as `Engine/*/Bolt`.",
+            Self::File => "Name of the file, such as `4hhb.pdb`.",
         }
     }
 }
 
 /// A set of attributes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub struct AttributeSet(u8);
+pub struct AttributeSet(u16);
 
 impl AttributeSet {
     /// Adds one.
@@ -142,6 +205,16 @@ impl AttributeSet {
         self.0 == 0
     }
 
+    /// Whether it has all of another.
+    pub fn covers(self, other: Self) -> bool {
+        other.0 & !self.0 == 0
+    }
+
+    /// What either has.
+    pub fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
     /// The attributes of the set.
     pub fn iter(self) -> impl Iterator<Item = Attribute> {
         Attribute::ALL.into_iter().filter(move |attribute| self.contains(*attribute))
@@ -149,11 +222,11 @@ impl AttributeSet {
 }
 
 /// A parsed selector. Equal to another if both are written alike.
-#[derive(Debug, Clone, Eq)]
+#[derive(Debug, Clone)]
 pub struct Selector {
     text: String,
     kind: Option<ObjectKind>,
-    conditions: Vec<(Attribute, Glob)>,
+    conditions: Vec<(Attribute, Pattern)>,
 }
 
 /// The rest follows from the text.
@@ -162,6 +235,8 @@ impl PartialEq for Selector {
         self.text == other.text
     }
 }
+
+impl Eq for Selector {}
 
 /// The selector that was meant by what other programs call it.
 fn meant(text: &str) -> Option<String> {
@@ -201,7 +276,15 @@ impl Selector {
                 return Err(bad(reason, Hint::new(name, allowed.iter().map(|attribute| attribute.name()))));
             };
             let (value, after) = read_value(value).map_err(|reason| bad(reason, Hint::NONE))?;
-            conditions.push((*attribute, Glob::new(value)));
+            let pattern = Pattern::read(*attribute, value).map_err(|wrong| match wrong {
+                BadPattern::Reversed => Problem::Meaningless("a range has its smaller end first: 10..40, not 40..10"),
+                BadPattern::NoRange => {
+                    let kinds = if attribute.values() == AttributeValues::Measures { "is asked by" } else { "has" };
+                    let value = super::hint::quote(value);
+                    bad(format!("{name} {kinds} ranges such as 10..40, 10.. or ..40, and {value} is none"), Hint::NONE)
+                }
+            })?;
+            conditions.push((*attribute, pattern));
             rest = after;
         }
         if !rest.is_empty() {
@@ -224,7 +307,12 @@ impl Selector {
 
     /// Each attribute with the pattern that it must match.
     pub fn conditions(&self) -> impl Iterator<Item = (Attribute, &str)> {
-        self.conditions.iter().map(|(attribute, glob)| (*attribute, glob.pattern()))
+        self.conditions.iter().map(|(attribute, pattern)| (*attribute, pattern.text()))
+    }
+
+    /// What it asks of an attribute.
+    pub(super) fn patterns(&self, attribute: Attribute) -> impl Iterator<Item = &Pattern> {
+        self.conditions.iter().filter(move |(of, _)| *of == attribute).map(|(_, pattern)| pattern)
     }
 
     /// The conditions that an object does not meet, in the order of the text, given a way to ask for its attributes.
@@ -232,18 +320,20 @@ impl Selector {
         &self,
         attribute: &dyn Fn(Attribute) -> Option<&'a str>,
     ) -> impl Iterator<Item = (Attribute, &str)> {
-        let meets =
-            |of: Attribute, glob: &Glob| attribute(of).is_some_and(|value| glob.matches(value, of.ignores_case()));
-        self.conditions.iter().filter(move |(of, glob)| !meets(*of, glob)).map(|(of, glob)| (*of, glob.pattern()))
+        let meets = |of: Attribute, pattern: &Pattern| {
+            attribute(of).is_some_and(|value| pattern.matches(value, of.ignores_case()))
+        };
+        self.conditions.iter().filter(move |(of, pattern)| !meets(*of, pattern)).map(|(of, p)| (*of, p.text()))
     }
 
     /// What it asks, in one form for every way to write it: two that ask the same match the same objects.
     pub(super) fn question(&self) -> (Option<ObjectKind>, Vec<(Attribute, String)>) {
-        let plain = |attribute, pattern: &str| match attribute {
-            Attribute::Element => pattern.to_ascii_lowercase(),
-            _ => pattern.to_owned(),
+        let plain = |of: Attribute, pattern: &Pattern| match pattern {
+            Pattern::Text(glob) if of.ignores_case() => glob.pattern().to_ascii_lowercase(),
+            Pattern::Text(glob) => glob.pattern().to_owned(),
+            Pattern::Range(range, _) => range.to_string(),
         };
-        let mut conditions: Vec<_> = self.conditions().map(|(of, pattern)| (of, plain(of, pattern))).collect();
+        let mut conditions: Vec<_> = self.conditions.iter().map(|(of, pattern)| (*of, plain(*of, pattern))).collect();
         conditions.sort();
         (self.kind, conditions)
     }
@@ -327,6 +417,29 @@ mod tests {
     }
 
     #[test]
+    fn numbers_are_asked_by_ranges() {
+        let of = |attribute, value| [(attribute, value)];
+        for (selector, attribute, value, expected) in [
+            ("atom[number=10..40]", Attribute::Number, "40", true),
+            ("atom[number=10..40]", Attribute::Number, "40B", true),
+            ("atom[number=10..40]", Attribute::Number, "41", false),
+            ("atom[number=100A]", Attribute::Number, "100A", true),
+            ("atom[number=100A]", Attribute::Number, "100", false),
+            ("atom[number=1?]", Attribute::Number, "17", true),
+            ("*[model=..2]", Attribute::Model, "2", true),
+            ("connector[b_factor=50..]", Attribute::BFactor, "50", true),
+            ("atom[charge=..-0.5]", Attribute::Charge, "-0.4", false),
+            ("atom[charge = ' .. -0.5 ' ]", Attribute::Charge, "-1", true),
+            ("mesh[part=1..2]", Attribute::Part, "1..2", true),
+            ("mesh[node=A/*/C]", Attribute::Node, "A/B/B/C", true),
+        ] {
+            let kind = if attribute == Attribute::BFactor { ObjectKind::Connector } else { ObjectKind::Atom };
+            let kind = if selector.starts_with("mesh") { ObjectKind::Mesh } else { kind };
+            assert_eq!(picks(selector, kind, &of(attribute, value)), expected, "{selector} on {value}");
+        }
+    }
+
+    #[test]
     fn ranks_follow_attributes_then_type() {
         let rank = |text: &str| Selector::parse(text).unwrap().rank();
         assert!(rank("*[name=a][chain=b]") > rank("atom[name=a]"));
@@ -344,12 +457,21 @@ mod tests {
             ),
             (
                 "mesh[element=O]",
-                "selector \"mesh[element=O]\": \"mesh\" has no attribute \"element\"; allowed: part, material, file",
+                "selector \"mesh[element=O]\": \"mesh\" has no attribute \"element\"; allowed: part, material, node, file",
             ),
             (
                 "atom[elemnt=O]",
-                "selector \"atom[elemnt=O]\": \"atom\" has no attribute \"elemnt\"; did you mean \"element\"? allowed: element, name, residue, chain, model",
+                "selector \"atom[elemnt=O]\": \"atom\" has no attribute \"elemnt\"; did you mean \"element\"? allowed: element, name, residue, number, kind, chain, model, altloc, b_factor, charge, file",
             ),
+            (
+                "atom[b_factor=20]",
+                "selector \"atom[b_factor=20]\": b_factor is asked by ranges such as 10..40, 10.. or ..40, and \"20\" is none",
+            ),
+            (
+                "atom[number=10..x]",
+                "selector \"atom[number=10..x]\": number has ranges such as 10..40, 10.. or ..40, and \"10..x\" is none",
+            ),
+            ("atom[number=40..10]", "a range has its smaller end first: 10..40, not 40..10"),
             ("atom[element=O", "selector \"atom[element=O\": ] is missing"),
             ("atom[element]", "selector \"atom[element]\": [attribute=value] is due after the type"),
             ("atom[", "selector \"atom[\": [attribute=value] is due after the type"),

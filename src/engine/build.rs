@@ -12,7 +12,7 @@ use crate::frame::Materials;
 use crate::frame::mesh::MeshPart;
 use crate::frame::objects::{self, Connector, DrawList, Material, pack_linear};
 use crate::providers::{Assignment, Lengths};
-use crate::scene::{Atom, Bond, MeshMaterial, Molecule, MoleculeCopy, Scene, Sphere};
+use crate::scene::{Atom, Bond, MeshMaterial, Molecule, MoleculeCopy, Scene};
 use crate::shading::{self, MaterialContext, SHADERS};
 
 /// Whatever of a style decides which objects are drawn, how large, and in which colours of their own. Styles that are
@@ -59,23 +59,25 @@ const FINISH_STEPS: f32 = 64.0;
 
 /// Makes every object of the scene that the style draws; `assignment` is what the style's rules come to.
 pub fn objects(scene: &Arc<Scene>, style: &Style, assignment: &Assignment) -> Objects {
-    let (mut objects, mut materials) =
-        molecule_objects(&scene.molecule, scene.bounding_sphere(), scene.unit, style, assignment);
+    // A scene of huge or tiny meshes has a unit of its own.
+    let lengths = |median| Lengths::of_scene(scene, &style.geometry, median);
+    let (mut objects, mut materials) = molecule_objects(&scene.molecule, scene.unit, style, assignment, &lengths);
     if !scene.assembly.is_empty() {
         add_parts(&mut objects.list, &mut materials, scene, style, assignment);
     }
     Objects { materials: materials.used, ..objects }
 }
 
-/// The objects of a molecule alone, in a scene of these bounds; `unit` is the scene's, in angstrom.
+/// The objects of a molecule alone; `unit` is the scene's, in angstrom, and `lengths` knows its lengths for a median radius
+/// of the drawn atoms.
 fn molecule_objects(
     molecule: &Molecule,
-    bounds: Sphere,
     unit: f64,
     style: &Style,
     assignment: &Assignment,
+    lengths: &dyn Fn(Option<f64>) -> Lengths,
 ) -> (Objects, MaterialNumbers) {
-    let geometry_lengths = Lengths::new(bounds, None);
+    let geometry_lengths = lengths(None);
 
     let uses: Vec<Option<usize>> = assignment.atoms.iter().map(|used| used.map(|index| index as usize)).collect();
 
@@ -92,7 +94,7 @@ fn molecule_objects(
     let middle = drawn_radii.len() / 2;
     let median =
         (!drawn_radii.is_empty()).then(|| f64::from(*drawn_radii.select_nth_unstable_by(middle, f32::total_cmp).1));
-    let lengths = Lengths::new(bounds, median);
+    let lengths = lengths(median);
 
     let mut materials = MaterialNumbers::default();
     let by_residue = style.shaders.iter().any(|shader| own_scheme(shader) == BaseColor::Residue);
@@ -123,7 +125,7 @@ fn molecule_objects(
         let Some(used) = used.map(|index| index as usize) else { continue };
         let (a, b) = (&molecule.atoms[bond.a as usize], &molecule.atoms[bond.b as usize]);
         let length = a.position.distance(b.position);
-        if length <= 1e-6 * bounds.radius {
+        if f64::from(length) <= 1e-6 * lengths.radius {
             continue;
         }
         let order = if style.geometry.bond_orders { bond.order.clamp(1, 3) } else { 1 };
@@ -153,7 +155,8 @@ fn molecule_objects(
 
 /// The objects of a molecule that stands alone.
 pub fn objects_of(molecule: &Molecule, style: &Style, assignment: &Assignment) -> Objects {
-    let (objects, materials) = molecule_objects(molecule, molecule.bounding_sphere(), 1.0, style, assignment);
+    let lengths = |median| Lengths::new(molecule.bounding_sphere(), median);
+    let (objects, materials) = molecule_objects(molecule, 1.0, style, assignment, &lengths);
     Objects { materials: materials.used, ..objects }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::config::{AtomRadius, Length, Notice, ObjectKind, Origin, ShaderUse, Style, Warning};
 use crate::providers::{ShaderProvider, unmatched};
-use crate::scene::Molecule;
+use crate::scene::Scene;
 use crate::shading;
 
 use super::build;
@@ -23,8 +23,8 @@ pub fn lint(style: &Style) -> Vec<Warning> {
 }
 
 /// The same with a scene, in which every outline has a width and every object a radius, and selectors can match nothing.
-pub fn lint_with(style: &Style, molecule: &Molecule) -> Vec<Warning> {
-    let of_scene = wide_outlines(style, molecule).into_iter().chain(unmatched(style, molecule));
+pub fn lint_with(style: &Style, scene: &Scene) -> Vec<Warning> {
+    let of_scene = wide_outlines(style, scene).into_iter().chain(unmatched(style, scene));
     effects_out_of_order(style).into_iter().chain(of_scene).collect()
 }
 
@@ -49,9 +49,9 @@ fn effects_out_of_order(style: &Style) -> Vec<Warning> {
 }
 
 /// Outlines that are wider than the smallest object they are drawn around, which they turn into a blot.
-fn wide_outlines(style: &Style, molecule: &Molecule) -> Vec<Warning> {
-    let provider = ShaderProvider::new(molecule, style);
-    let objects = build::objects_of(molecule, style, provider.assignment());
+fn wide_outlines(style: &Style, scene: &Scene) -> Vec<Warning> {
+    let provider = ShaderProvider::new(scene, style);
+    let objects = build::objects_of(&scene.molecule, style, provider.assignment());
     let mut smallest = vec![[f32::INFINITY; 2]; objects.materials.len()];
     for atom in &objects.list.atoms {
         let [of_atoms, _] = &mut smallest[atom.material as usize];

@@ -18,10 +18,10 @@ pub struct Sources {
     pub style: Box<dyn Fn() -> Result<Style, Mistakes> + Send>,
     /// The style's own file, if it is one: watched even before it can be read.
     pub style_file: Option<PathBuf>,
-    /// Loads the scene.
+    /// Loads the scene. Which files beside its own that takes, it says itself.
     pub scene: Box<dyn Fn() -> Result<Scene, SceneError> + Send>,
-    /// The scene's file, if it is one.
-    pub scene_file: Option<PathBuf>,
+    /// The scene's own files: watched even before they can be read.
+    pub scene_files: Vec<PathBuf>,
     /// Shaders that stand in for those of the program, such as [`source_tree_shaders`].
     pub shader_folder: Option<PathBuf>,
 }
@@ -31,7 +31,7 @@ pub struct Sources {
 pub enum Part {
     /// WGSL files of a source tree.
     Shaders,
-    /// The molecule.
+    /// The files of the scene.
     Scene,
     /// The style with its bases.
     Style,
@@ -108,7 +108,7 @@ impl Live {
             sources,
         };
         // Watched before anything is read, so that no change falls between.
-        live.watch.set(Part::Scene, live.sources.scene_file.clone());
+        live.watch.set(Part::Scene, live.sources.scene_files.clone());
         live.watch.set(Part::Style, live.sources.style_file.clone());
         if let Some(folder) = &live.sources.shader_folder {
             live.watch.set(Part::Shaders, shader_files(folder));
@@ -235,6 +235,9 @@ impl Engine {
 
     fn reload_scene(&mut self, live: &mut Live) -> Result<Option<(Instant, Instant)>, Refusal> {
         let scene = (live.sources.scene)().map_err(Refusal::Scene)?;
+        // What a scene that does not load names is not known: what the former one named is watched until then.
+        let beside = scene.files.iter().flat_map(|file| file.side_files.iter().cloned());
+        live.watch.set(Part::Scene, live.sources.scene_files.iter().cloned().chain(beside));
         let loaded_at = Instant::now();
         if self.scene().or(live.scene.as_deref()) == Some(&scene) {
             return Ok(None);

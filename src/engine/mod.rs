@@ -38,7 +38,7 @@ const NOT_DRAWN: [(&str, Role, &str); 4] = [
 ];
 
 /// Types of objects that this version draws.
-pub const DRAWN_KINDS: &[ObjectKind] = &[ObjectKind::Atom, ObjectKind::Connector];
+pub const DRAWN_KINDS: &[ObjectKind] = &[ObjectKind::Atom, ObjectKind::Connector, ObjectKind::Mesh];
 
 /// Names and parameter tables of everything a style can refer to, from the registries.
 pub fn catalog() -> Vec<CatalogEntry> {
@@ -95,9 +95,7 @@ struct Content {
 
 impl Content {
     fn new(scene: Arc<Scene>, style: Arc<Style>) -> Content {
-        let molecule = &scene.molecule;
-        let positions = molecule.atoms.iter().map(|atom| atom.position);
-        let camera = CameraProvider::new(style.camera.clone(), scene.bounding_sphere(), positions);
+        let camera = CameraProvider::new(style.camera.clone(), &scene);
         Content { scene, style, camera }
     }
 }
@@ -362,10 +360,9 @@ impl Engine {
 /// same is taken over.
 fn resolve(content: &Content, drawn: Option<&Drawn>, height_px: u32) -> Resolved {
     let Content { scene, style, camera } = content;
-    let molecule = &scene.molecule;
     let shaders = match drawn {
-        Some(drawn) => drawn.shaders.with_style(style),
-        None => ShaderProvider::new(molecule, style),
+        Some(drawn) => drawn.shaders.with_style(scene, style),
+        None => ShaderProvider::new(scene, style),
     };
     let key = ObjectKey::new(style, Arc::clone(shaders.assignment()));
     let (list, used, lengths) = match drawn.filter(|drawn| drawn.key == key) {

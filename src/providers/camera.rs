@@ -3,10 +3,13 @@
 use glam::{DVec3, Mat3, Mat4, Vec2, Vec3};
 
 use crate::config;
-use crate::scene::{Camera, Sphere};
+use crate::scene::{Camera, Part, Scene, Sphere};
 
 /// The scene's sphere fills this share of the shorter side of the picture.
 const FILL: f32 = 0.98;
+
+/// Most vertices of meshes that say how a scene lies. Ours: the axes of larger meshes turn by less than anyone sees.
+const MOST_VERTICES: u64 = 1 << 16;
 
 /// Answers what the camera sees.
 #[derive(Debug, Clone)]
@@ -18,13 +21,16 @@ pub struct CameraProvider {
 }
 
 impl CameraProvider {
-    /// A provider for this part of a style and a scene of these bounds. `positions` are the atoms' centres.
-    pub fn new(style: config::Camera, bounds: Sphere, positions: impl Iterator<Item = Vec3>) -> CameraProvider {
+    /// A provider for this part of a style and a scene.
+    pub fn new(style: config::Camera, scene: &Scene) -> CameraProvider {
         let principal = match style.orient {
             config::Orient::Default => Mat3::IDENTITY,
-            config::Orient::Principal => principal_axes(positions),
+            config::Orient::Principal => {
+                let atoms = scene.molecule.drawn_balls().map(|(center, _)| center);
+                principal_axes(atoms.chain(vertices(scene, MOST_VERTICES)))
+            }
         };
-        CameraProvider { style, bounds, principal }
+        CameraProvider { style, bounds: scene.bounding_sphere(), principal }
     }
 
     /// Premultiplied linear background; transparent where asked.
@@ -103,6 +109,21 @@ impl CameraProvider {
     }
 }
 
+/// Vertices of all parts where they are drawn, at most so many, each as far from the next in the order of the scene.
+fn vertices(scene: &Scene, most: u64) -> impl Iterator<Item = Vec3> {
+    let assembly = &scene.assembly;
+    let positions = |part: &Part| &assembly.shapes[part.shape as usize].positions;
+    let total: u64 = assembly.parts.iter().map(|part| positions(part).len() as u64).sum();
+    let step = total.div_ceil(most).max(1);
+    let mut next = 0;
+    assembly.parts.iter().flat_map(move |part| {
+        let (positions, first) = (positions(part), next);
+        let num_taken = (positions.len() as u64).saturating_sub(first).div_ceil(step);
+        next = first + num_taken * step - positions.len() as u64;
+        (0..num_taken).map(move |i| part.world_from_shape.transform_point3(positions[(first + i * step) as usize]))
+    })
+}
+
 /// Rotation that turns the directions of largest, middle and smallest spread of `positions` to x, y and z, each axis
 /// kept as close to its own as it can be. Identity where the spreads do not differ by a tenth, as in a ball.
 fn principal_axes(positions: impl Iterator<Item = Vec3>) -> Mat3 {
@@ -160,12 +181,13 @@ fn symmetric_eigen(mut m: [[f64; 3]; 3]) -> ([f64; 3], [DVec3; 3]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::mesh::{RawMesh, RawPart, RawShape};
 
     fn provider(change: impl FnOnce(&mut config::Camera)) -> CameraProvider {
         let mut style = config::Camera::new(&config::Values::defaults(config::camera::PARAMS));
         change(&mut style);
         let bounds = Sphere { center: Vec3::new(1.0, 2.0, 3.0), radius: 5.0 };
-        CameraProvider::new(style, bounds, std::iter::empty())
+        CameraProvider { style, bounds, principal: Mat3::IDENTITY }
     }
 
     #[test]
@@ -203,6 +225,40 @@ mod tests {
         .camera([100, 100]);
         let center = camera.view_from_world.transform_point3(Vec3::new(1.0, 2.0, 3.0));
         assert!(camera.near < -center.z - 5.0, "{camera:?}");
+    }
+
+    #[test]
+    fn a_bounded_sample_of_vertices_spans_all_parts() {
+        let mut scene = Scene::from_bytes("a.xyz", b"1\n\nC 0 0 0\n").expect("an atom");
+        let shape = |count: u32| RawShape {
+            positions: (0..count).map(|i| DVec3::new(f64::from(i), 0.0, 0.0)).collect(),
+            triangles: vec![[0, 1, 2]],
+            ..RawShape::default()
+        };
+        let part = |shape: u32, y: f64| RawPart {
+            shape,
+            material: None,
+            name: String::new(),
+            path: String::new(),
+            file_from_shape: glam::DAffine3::from_translation(DVec3::Y * y),
+        };
+        let raw = RawMesh {
+            shapes: vec![shape(3), shape(40)],
+            parts: (0..50).map(|i| part(i % 2, f64::from(i))).collect(),
+            materials: Vec::new(),
+        };
+        let assembly = crate::scene::Assembly::build(raw, 0, &mut crate::scene::Report::default());
+        scene.assembly = assembly.expect("triangles");
+        let total: usize =
+            scene.assembly.parts.iter().map(|part| scene.assembly.shapes[part.shape as usize].positions.len()).sum();
+        for most in [1, 7, 100, 1000, 10_000] {
+            let taken = vertices(&scene, most).count();
+            assert!(taken <= most as usize && taken >= total.min(most as usize / 2).max(1), "{taken} of {most}");
+        }
+        // Every part of the larger shape is met, and each vertex once where there is no bound.
+        let ys: std::collections::BTreeSet<i32> = vertices(&scene, 100).map(|p| p.y.round() as i32).collect();
+        assert!(ys.len() >= 25, "{ys:?}");
+        assert_eq!(vertices(&scene, u64::MAX).count(), total);
     }
 
     #[test]

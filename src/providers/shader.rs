@@ -1,16 +1,19 @@
 //! ShaderProvider: `mapping` and `shaders` of the style answer which shader, with its properties set, draws an object.
 //!
 //! It answers by object [Prost2016 §3.2]; by name it is asked while a style loads, so that rules hold indices. It
-//! answers for all objects of a molecule at once, in time linear in atoms, bonds and rules: atoms are asked by classes,
-//! and rules by an index. What stays the same from one style to the next is taken over: nothing is asked where the
+//! answers for all objects of a scene at once, in time linear in atoms, bonds, parts and rules: objects are asked by
+//! classes, and rules by an index. What stays the same from one style to the next is taken over: nothing is asked where the
 //! rules are as they were, so that a changed property costs a comparison of the rules and no more.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::classes::{ATTRIBUTES, AtomClasses};
-use crate::config::{Matched, MatchedValues, ObjectKind, RuleIndex, Selector, Style};
-use crate::scene::Molecule;
+use super::classes::{Classes, asked};
+use crate::config::{AttributeSet, Matched, MatchedValues, ObjectKind, RuleIndex, Selector, Style};
+use crate::scene::{Bond, Scene};
+
+/// The types that are atoms in some way, and have the same attributes.
+pub(super) const OF_ATOMS: [ObjectKind; 2] = [ObjectKind::Atom, ObjectKind::Connector];
 
 /// What draws each object, as an index into the style's shaders; none where the style hides it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -19,14 +22,15 @@ pub struct Assignment {
     pub atoms: Vec<Option<u32>>,
     /// For each bond. It is hidden with either of its atoms.
     pub connectors: Vec<Option<u32>>,
-    /// For each part of meshes.
+    /// For each part of the scene's meshes.
     pub parts: Vec<Option<u32>>,
 }
 
-/// What draws the objects of one molecule in one style. A clone costs next to nothing.
+/// What draws the objects of one scene in one style. A clone costs next to nothing.
 #[derive(Debug, Clone)]
 pub struct ShaderProvider {
-    classes: Arc<AtomClasses>,
+    atoms: Arc<Classes>,
+    parts: Arc<Classes>,
     winners: Arc<Winners>,
     targets: Targets,
     assignment: Arc<Assignment>,
@@ -38,6 +42,7 @@ struct Winners {
     selectors: Vec<Selector>,
     atoms: Vec<Option<u32>>,
     connectors: Vec<Option<u32>>,
+    parts: Vec<Option<u32>>,
 }
 
 /// What the rules draw with.
@@ -48,34 +53,40 @@ struct Targets {
 }
 
 impl ShaderProvider {
-    /// Resolves a style for a molecule.
-    pub fn new(molecule: &Molecule, style: &Style) -> ShaderProvider {
-        let classes = Arc::new(AtomClasses::new(molecule));
-        let winners = Arc::new(Winners::new(&classes, style));
+    /// Resolves a style for a scene.
+    pub fn new(scene: &Scene, style: &Style) -> ShaderProvider {
+        let atoms = Arc::new(Classes::of_atoms(scene, asked(style, &OF_ATOMS)));
+        let parts = Arc::new(Classes::of_parts(scene, asked(style, &[ObjectKind::Mesh])));
+        let winners = Arc::new(Winners::new(&atoms, &parts, style));
         let targets = Targets::new(style);
-        let assignment = Arc::new(targets.assignment(&classes, &winners));
-        ShaderProvider { classes, winners, targets, assignment }
+        let assignment = Arc::new(targets.assignment(&atoms, &scene.molecule.bonds, &parts, &winners));
+        ShaderProvider { atoms, parts, winners, targets, assignment }
     }
 
-    /// Resolves another style for the same molecule. Where that draws each object with the same shader of its list, the
+    /// Resolves another style for the same scene. Where that draws each object with the same shader of its list, the
     /// assignment is the same one.
-    pub fn with_style(&self, style: &Style) -> ShaderProvider {
-        let classes = Arc::clone(&self.classes);
-        let rules = style.mapping.iter().map(|rule| &rule.selector);
-        let winners = if rules.eq(&self.winners.selectors) {
-            Arc::clone(&self.winners)
-        } else {
-            Arc::new(Winners::new(&classes, style))
-        };
+    pub fn with_style(&self, scene: &Scene, style: &Style) -> ShaderProvider {
         let targets = Targets::new(style);
-        let mut assignment = Arc::clone(&self.assignment);
-        if !Arc::ptr_eq(&winners, &self.winners) || targets != self.targets {
-            let new = targets.assignment(&classes, &winners);
-            if new != *assignment {
-                assignment = Arc::new(new);
-            }
+        let is_known = style.mapping.iter().map(|rule| &rule.selector).eq(&self.winners.selectors);
+        if is_known && targets == self.targets {
+            return self.clone();
         }
-        ShaderProvider { classes, winners, targets, assignment }
+        let (mut atoms, mut parts, mut winners) =
+            (Arc::clone(&self.atoms), Arc::clone(&self.parts), Arc::clone(&self.winners));
+        if !is_known {
+            let renew = |classes: &mut Arc<Classes>, of: fn(&Scene, AttributeSet) -> Classes, asked| {
+                if !classes.hold_for(asked) {
+                    *classes = Arc::new(of(scene, asked));
+                }
+            };
+            renew(&mut atoms, Classes::of_atoms, asked(style, &OF_ATOMS));
+            renew(&mut parts, Classes::of_parts, asked(style, &[ObjectKind::Mesh]));
+            winners = Arc::new(Winners::new(&atoms, &parts, style));
+        }
+        let new = targets.assignment(&atoms, &scene.molecule.bonds, &parts, &winners);
+        let is_same = new == *self.assignment;
+        let assignment = if is_same { Arc::clone(&self.assignment) } else { Arc::new(new) };
+        ShaderProvider { atoms, parts, winners, targets, assignment }
     }
 
     /// What draws each object.
@@ -85,19 +96,23 @@ impl ShaderProvider {
 }
 
 impl Winners {
-    fn new(classes: &AtomClasses, style: &Style) -> Winners {
+    fn new(atoms: &Classes, parts: &Classes, style: &Style) -> Winners {
         Winners {
             selectors: style.mapping.iter().map(|rule| rule.selector.clone()).collect(),
-            atoms: first_rules(classes, style, ObjectKind::Atom),
-            connectors: first_rules(classes, style, ObjectKind::Connector),
+            atoms: first_rules(atoms, style, ObjectKind::Atom),
+            connectors: first_rules(atoms, style, ObjectKind::Connector),
+            parts: first_rules(parts, style, ObjectKind::Mesh),
         }
     }
 }
 
-/// The first rule for each class of atoms, as if it were an object of this type.
-fn first_rules(classes: &AtomClasses, style: &Style, kind: ObjectKind) -> Vec<Option<u32>> {
+/// The first rule for each class, as if it were an object of this type.
+fn first_rules(classes: &Classes, style: &Style, kind: ObjectKind) -> Vec<Option<u32>> {
+    if classes.count == 0 {
+        return Vec::new();
+    }
     let mut index = RuleIndex::new(style, kind);
-    // Classes that differ only in what no rule asks for come to the same values, and are asked once.
+    // Classes that differ only in what no rule of this type asks for come to the same values, and are asked once.
     let mut known: HashMap<MatchedValues, Option<u32>> = HashMap::new();
     let objects = matched_values(classes, style, kind, &mut index);
     objects.iter().map(|object| *known.entry(*object).or_insert_with(|| index.first(object))).collect()
@@ -105,28 +120,20 @@ fn first_rules(classes: &AtomClasses, style: &Style, kind: ObjectKind) -> Vec<Op
 
 /// What the values of each class match.
 pub(super) fn matched_values(
-    classes: &AtomClasses,
+    classes: &Classes,
     style: &Style,
     kind: ObjectKind,
     index: &mut RuleIndex,
 ) -> Vec<MatchedValues> {
     let asked = style.attributes_used(kind);
-    let asked: Vec<(usize, usize, Vec<Matched>)> = (0..)
-        .zip(ATTRIBUTES)
-        .filter(|(_, attribute)| asked.contains(*attribute))
-        .map(|(number, attribute)| {
-            let values = classes.values[number].iter();
-            (number, attribute as usize, values.map(|value| index.matched(attribute, value)).collect())
-        })
-        .collect();
-    let matched = |class: &[u32; ATTRIBUTES.len()]| {
-        let mut object = MatchedValues::default();
-        for (number, attribute, matched) in &asked {
-            object[*attribute] = matched[class[*number] as usize];
+    let mut objects = vec![MatchedValues::default(); classes.count];
+    for column in classes.columns().iter().filter(|column| asked.contains(column.attribute)) {
+        let matched: Vec<Matched> = column.texts.iter().map(|value| index.matched(column.attribute, value)).collect();
+        for (object, value) in objects.iter_mut().zip(&column.of_class) {
+            object.set(column.attribute, matched[*value as usize]);
         }
-        object
-    };
-    classes.classes.iter().map(matched).collect()
+    }
+    objects
 }
 
 impl Targets {
@@ -139,16 +146,20 @@ impl Targets {
         rule.map_or(Some(self.basic), |rule| self.of_rules[rule as usize]).map(|shader| shader as u32)
     }
 
-    fn assignment(&self, classes: &AtomClasses, winners: &Winners) -> Assignment {
-        let atoms: Vec<Option<u32>> = winners.atoms.iter().map(|rule| self.of(*rule)).collect();
+    fn assignment(&self, classes: &Classes, bonds: &[Bond], of_parts: &Classes, winners: &Winners) -> Assignment {
+        let of_classes =
+            |rules: &[Option<u32>]| -> Vec<Option<u32>> { rules.iter().map(|rule| self.of(*rule)).collect() };
+        let (atoms, parts) = (of_classes(&winners.atoms), of_classes(&winners.parts));
         // A connector matches if either of its atoms does: the earlier of the two rules wins.
-        let connector = |[a, b]: &[u32; 2]| {
-            let (a, b) = (*a as usize, *b as usize);
+        let connector = |bond: &Bond| {
+            let [a, b] = [bond.a, bond.b].map(|atom| classes.of_object[atom as usize] as usize);
             let rules = [winners.connectors[a], winners.connectors[b]];
             (atoms[a].is_some() && atoms[b].is_some()).then(|| self.of(rules.into_iter().flatten().min())).flatten()
         };
-        let connectors = classes.of_bond.iter().map(connector).collect();
-        let atoms = classes.of_atom.iter().map(|class| atoms[*class as usize]).collect();
-        Assignment { atoms, connectors, parts: vec![Some(self.basic as u32); 100_000] }
+        let connectors = bonds.iter().map(connector).collect();
+        let of_objects = |classes: &Classes, used: &[Option<u32>]| {
+            classes.of_object.iter().map(|class| used[*class as usize]).collect()
+        };
+        Assignment { atoms: of_objects(classes, &atoms), connectors, parts: of_objects(of_parts, &parts) }
     }
 }

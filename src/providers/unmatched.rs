@@ -2,15 +2,15 @@
 
 use std::collections::{BTreeSet, HashSet};
 
-use super::classes::AtomClasses;
-use super::shader::matched_values;
-use crate::config::{Attribute, Hint, Notice, ObjectKind, Rule, RuleIndex, Style, Warning};
-use crate::scene::Molecule;
+use super::classes::{Classes, asked};
+use super::shader::{OF_ATOMS, matched_values};
+use crate::config::{Attribute, AttributeValues, Hint, Notice, ObjectKind, Rule, RuleIndex, Style, Warning};
+use crate::scene::Scene;
 
 /// Most rules that are told the names of the scene. Ours: more than anyone reads, and a bound on the work.
 const MOST_HINTED: usize = 100;
 
-/// Most classes of atoms that are looked at for one rule's names.
+/// Most classes of objects that are looked at for one rule's names.
 const MOST_CLASSES: usize = 10_000;
 
 /// Most names that are compared with a wrong one.
@@ -19,30 +19,52 @@ const MOST_COMPARED: usize = 1000;
 /// Most names that a message lists.
 const MOST_NAMES: usize = 20;
 
-/// A warning for each rule for atoms, connectors or `*` that matches no object of the molecule, by file and in the order
-/// of the text. Rules for other types are left out: that these are not drawn yet is told when the style loads.
-pub fn unmatched(style: &Style, molecule: &Molecule) -> Vec<Warning> {
-    let classes = AtomClasses::new(molecule);
-    let bonded = classes.bonded();
-    let used = |kind| {
+/// The objects of some types.
+struct Objects {
+    kinds: &'static [ObjectKind],
+    classes: Classes,
+    /// For each class of atoms whether a bond has one; empty of parts.
+    bonded: Vec<bool>,
+}
+
+impl Objects {
+    /// Whether there are objects of a class that are of a type.
+    fn exist(&self, class: usize, kind: Option<ObjectKind>) -> bool {
+        kind != Some(ObjectKind::Connector) || self.bonded[class]
+    }
+}
+
+/// A warning for each rule that matches no object of the scene, by file and in the order of the text. Rules for types that
+/// the scene has nothing of are left out, since a style may be meant for molecules and meshes; so are types that are not
+/// drawn yet, which is told when the style loads.
+pub fn unmatched(style: &Style, scene: &Scene) -> Vec<Warning> {
+    let atoms = Classes::of_atoms(scene, asked(style, &OF_ATOMS));
+    let bonded = atoms.bonded(&scene.molecule.bonds);
+    let parts = Classes::of_parts(scene, asked(style, &[ObjectKind::Mesh]));
+    let all = [
+        Objects { kinds: &OF_ATOMS, classes: atoms, bonded },
+        Objects { kinds: &[ObjectKind::Mesh], classes: parts, bonded: Vec::new() },
+    ];
+    let all: Vec<Objects> = all.into_iter().filter(|objects| objects.classes.count > 0).collect();
+    let used = |objects: &Objects, kind: ObjectKind| {
         let mut index = RuleIndex::new(style, kind);
-        let objects = matched_values(&classes, style, kind, &mut index);
-        let exist = |class: usize| kind != ObjectKind::Connector || bonded[class];
-        let objects: HashSet<_> = objects.into_iter().enumerate().filter(|(i, _)| exist(*i)).map(|(_, o)| o).collect();
-        index.used(objects)
+        let matched = matched_values(&objects.classes, style, kind, &mut index).into_iter().enumerate();
+        let matched: HashSet<_> = matched.filter(|(i, _)| objects.exist(*i, Some(kind))).map(|(_, o)| o).collect();
+        index.used(matched)
     };
-    let (by_atoms, by_connectors) = (used(ObjectKind::Atom), used(ObjectKind::Connector));
-    let is_for = |rule: &Rule| [ObjectKind::Atom, ObjectKind::Connector].iter().any(|kind| rule.selector.is_for(*kind));
+    let used: Vec<Vec<bool>> =
+        all.iter().flat_map(|objects| objects.kinds.iter().map(|kind| used(objects, *kind))).collect();
+    let is_there = |rule: &Rule| all.iter().flat_map(|of| of.kinds).any(|kind| rule.selector.is_for(*kind));
     let mut rules: Vec<&Rule> = style
         .mapping
         .iter()
         .enumerate()
-        .filter(|(i, rule)| is_for(rule) && !by_atoms[*i] && !by_connectors[*i])
+        .filter(|(i, rule)| is_there(rule) && !used.iter().any(|used| used[*i]))
         .map(|(_, rule)| rule)
         .collect();
     rules.sort_by(|a, b| (&a.place.file, a.place.start).cmp(&(&b.place.file, b.place.start)));
     let warning = |(i, rule): (usize, &Rule)| {
-        let hint = if i < MOST_HINTED { names(rule, &classes, &bonded) } else { Hint::NONE };
+        let hint = if i < MOST_HINTED { names(rule, &all) } else { Hint::NONE };
         let notice = Notice::MatchesNothing { selector: rule.selector.to_string(), hint };
         Warning { place: rule.place.clone(), notice }
     };
@@ -50,15 +72,19 @@ pub fn unmatched(style: &Style, molecule: &Molecule) -> Vec<Warning> {
 }
 
 /// The names that the scene has for the attribute that fails: those of the objects that miss the fewest conditions.
-fn names(rule: &Rule, classes: &AtomClasses, bonded: &[bool]) -> Hint {
-    let exist = |class: &u32| rule.selector.kind() != Some(ObjectKind::Connector) || bonded[*class as usize];
+fn names(rule: &Rule, all: &[Objects]) -> Hint {
     let mut best: Option<(usize, Attribute, &str)> = None;
     let mut names: BTreeSet<&str> = BTreeSet::new();
-    for class in (0..classes.classes.len() as u32).filter(exist).take(MOST_CLASSES) {
-        let value = |attribute| classes.value(class, attribute);
+    let kind = rule.selector.kind();
+    let classes = all.iter().filter(|objects| objects.kinds.iter().any(|kind| rule.selector.is_for(*kind)));
+    let classes = classes.flat_map(|objects| (0..objects.classes.count as u32).map(move |class| (objects, class)));
+    for (objects, class) in classes.filter(|(of, class)| of.exist(*class as usize, kind)).take(MOST_CLASSES) {
+        let value = |attribute| objects.classes.value(class, attribute);
         let mut unmet = rule.selector.unmet(&value);
         let Some((attribute, pattern)) = unmet.next() else { continue };
-        let candidate = (1 + unmet.count(), attribute, pattern);
+        // What the objects do not have at all cannot be mended by another value.
+        let has_none = usize::from(value(attribute).is_none());
+        let candidate = (1 + unmet.count() + has_none, attribute, pattern);
         if best.is_none_or(|best| candidate.0 < best.0) {
             best = Some(candidate);
             names.clear();
@@ -67,7 +93,20 @@ fn names(rule: &Rule, classes: &AtomClasses, bonded: &[bool]) -> Hint {
             names.extend(value(attribute).filter(|name| !name.is_empty()));
         }
     }
-    let Some((_, _, pattern)) = best else { return Hint::NONE };
+    let Some((_, attribute, pattern)) = best else { return Hint::NONE };
+    if attribute.values() != AttributeValues::Texts
+        && let Some(range) = range_of(&names)
+    {
+        return Hint::list([range.as_str()]);
+    }
     let too_many = names.len() > MOST_NAMES;
     if too_many { Hint::nearest_of(pattern, names) } else { Hint::new(pattern, names) }
+}
+
+/// The smallest and the largest of many numbers as a range; none of few numbers, which are listed.
+fn range_of(names: &BTreeSet<&str>) -> Option<String> {
+    let number = |name: &str| name.trim_end_matches(|c: char| !c.is_ascii_digit()).parse::<f64>().ok();
+    let numbers = || names.iter().filter_map(|name| number(name));
+    let (low, high) = (numbers().reduce(f64::min)?, numbers().reduce(f64::max)?);
+    (names.len() > 3).then(|| format!("{low}..{high}"))
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{Affine3A, DVec3, Vec3};
 
+use super::import::Format;
 use super::mesh::Assembly;
 use super::molecule::{Molecule, MoleculeCopy, Sphere};
 use super::report::Report;
@@ -14,6 +15,7 @@ impl Scene {
     /// The scene of one file; `file` is its path.
     pub(super) fn of_file(
         file: &str,
+        format: Format,
         molecule: Molecule,
         assembly: Assembly,
         report: Report,
@@ -24,7 +26,7 @@ impl Scene {
         let name = text(path.file_stem()).unwrap_or_default();
         let unit = if assembly.is_empty() { 1.0 } else { assembly.unit };
         let sphere = if assembly.is_empty() { molecule.bounding_sphere() } else { assembly.sphere };
-        let files = vec![SceneFile { name: text(path.file_name()).unwrap_or_default(), report, side_files }];
+        let files = vec![SceneFile { name: text(path.file_name()).unwrap_or_default(), format, report, side_files }];
         Scene { molecule, assembly, files, name, unit, sphere }
     }
 

@@ -41,7 +41,7 @@ pub use camera::Camera;
 pub use element::{Element, ElementInfo};
 pub use error::SceneError;
 pub use image::{Image, Pixels, RowsHeader, write_png_rows, write_whole};
-pub use import::{LoadOptions, ModelChoice};
+pub use import::{Format, LoadOptions, ModelChoice};
 pub use light::{Light, LightPlace, Lighting, Shadow};
 pub use mesh::{Assembly, MeshMaterial, Part, RawMesh, Shape};
 pub use molecule::{Atom, Bond, Chain, Molecule, MoleculeCopy, Residue, ResidueKind, Sphere};
@@ -77,6 +77,8 @@ pub struct Scene {
 pub struct SceneFile {
     /// Its name without folder, as selectors know it.
     pub name: String,
+    /// What it was read as.
+    pub format: Format,
     /// What was mended, guessed or skipped in it.
     pub report: Report,
     /// Files beside it that it names and that were read, such as materials.

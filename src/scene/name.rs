@@ -33,6 +33,12 @@ impl Name {
         Self(self.0.map(|byte| if byte == b'*' { b'\'' } else { byte }))
     }
 
+    /// The label in the lower 48 bits of a number: equal for equal labels.
+    pub const fn bits(self) -> u64 {
+        let [a, b, c, d, e, f] = self.0;
+        u64::from_le_bytes([a, b, c, d, e, f, 0, 0])
+    }
+
     /// The label in upper case.
     pub fn to_uppercase(self) -> Self {
         Self(self.0.map(|byte| byte.to_ascii_uppercase()))

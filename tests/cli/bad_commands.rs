@@ -56,10 +56,10 @@ fn an_argument_that_is_no_text_is_refused() {
 #[test]
 fn a_name_that_nothing_has_finds_its_nearest() {
     let folder = Folder::new("names");
-    folder.draw("caffiene").refused(1, "no molecule of this name; did you mean \"caffeine\"? shipped: c60, ");
+    folder.draw("caffiene").refused(1, "no molecule or mesh of this name; did you mean \"caffeine\"? shipped: c60, ");
     folder.draw("c60 -s educaton").refused(1, "no look of this name; did you mean \"education\"? shipped: ");
     folder.run("check ./Education.json").refused(1, "did you mean \"education\"? shipped: ");
-    folder.draw("zzzzzzzz").refused(1, "no molecule of this name; shipped: c60, ");
+    folder.draw("zzzzzzzz").refused(1, "no molecule or mesh of this name; shipped: c60, ");
     folder.draw("nope.xyz").refused(1, "nope.xyz: no such file; check the spelling");
     folder.draw("no/nope.pdb").refused(1, "no/nope.pdb: no such file");
     folder.draw("c60 -s nope.json").refused(1, "nope.json: no such file, and no look of this name");

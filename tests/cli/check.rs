@@ -136,7 +136,7 @@ fn a_scene_tells_more() {
         "{outcome:?}"
     );
     assert_eq!(outcome.out, "wide.json: fine, 1 warning\n");
-    folder.run("check wide.json --scene watr").refused(1, "no molecule of this name; did you mean \"water\"?");
+    folder.run("check wide.json --scene watr").refused(1, "no molecule or mesh of this name; did you mean \"water\"?");
     folder.run("check wide.json --scene nope.pdb").refused(1, "nope.pdb: no such file");
     folder.write("damaged.xyz", "2\n\nC 0 0 0\nC nan 0 0\n");
     let outcome = folder.run("check scientific --scene damaged.xyz --format json").done();

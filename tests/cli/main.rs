@@ -8,6 +8,7 @@ mod bad_scenes;
 mod bad_styles;
 mod check;
 mod extremes;
+mod info;
 mod pictures;
 mod rig;
 mod schema;

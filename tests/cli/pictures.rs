@@ -93,7 +93,9 @@ fn json_is_one_line_with_the_keys_of_the_manual() {
     for key in ["load_ms", "first_frame_ms", "readback_ms", "encode_ms", "device_ms", "total_ms"] {
         assert!(line[key].as_f64().is_some_and(|ms| ms >= 0.0), "{key}: {line}");
     }
-    for key in ["triangles", "spheres", "cylinders", "atoms", "bonds", "pipelines_built", "samples"] {
+    for key in
+        ["triangles", "spheres", "cylinders", "atoms", "bonds", "parts", "mesh_triangles", "pipelines_built", "samples"]
+    {
         assert!(line[key].is_u64(), "{key}: {line}");
     }
     assert_eq!(line["frame_ms"].as_array().map(Vec::len), Some(3));
@@ -156,7 +158,10 @@ fn every_shipped_scene_and_look_is_drawn_from_any_folder() {
     let Some(folder) = Folder::with_adapter("shipped") else { return };
     folder.run("gallery --size 4x4 --samples 1 -o all").done();
     let count = std::fs::read_dir(folder.path("all")).unwrap().count();
-    assert_eq!(count, restyle::shipped::LOOKS.len() * restyle::shipped::MOLECULES.len() + 1);
+    assert_eq!(
+        count,
+        restyle::shipped::LOOKS.len() * restyle::shipped::SCENES.iter().map(|shipped| shipped.len()).sum::<usize>() + 1
+    );
 }
 
 #[test]

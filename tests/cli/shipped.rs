@@ -64,6 +64,6 @@ fn without_an_adapter_the_message_names_the_package() {
 fn help_and_version_need_nothing() {
     let folder = Folder::new("help");
     let help = folder.run("--help").done().out;
-    assert!(["render", "gallery", "copy", "schema"].iter().all(|command| help.contains(command)), "{help}");
+    assert!(["render", "gallery", "info", "copy", "schema"].iter().all(|command| help.contains(command)), "{help}");
     assert_eq!(folder.run("--version").done().out, format!("restyle {}\n", env!("CARGO_PKG_VERSION")));
 }

@@ -103,6 +103,23 @@ fn files_that_do_not_load_are_waited_for() {
 
 #[cfg(unix)]
 #[test]
+fn every_scene_is_followed() {
+    let Some(folder) = Folder::with_adapter("watch-scenes") else { return };
+    folder.write("a.xyz", "1\n\nC 0 0 0\n").write("b.xyz", "1\n\nO 5 0 0\n");
+    let watching = Watching::start(&folder, "render a.xyz water b.xyz -o o.png --size 8x8 --samples 1 --watch");
+    watching.says("o.png: drawn in ");
+    folder.write("b.xyz", "");
+    watching.says("b.xyz: is empty");
+    watching.says("a.xyz, water, b.xyz: waiting for it to be mended; the picture stays as it is");
+    folder.write("b.xyz", "1\n\nO 6 0 0\n");
+    watching.says("o.png: drawn in ");
+    folder.write("a.xyz", "1\n\nC 1 0 0\n");
+    watching.says("o.png: drawn in ");
+    assert_eq!(watching.interrupt(), Some(0));
+}
+
+#[cfg(unix)]
+#[test]
 fn an_interrupt_breaks_a_long_still_off() {
     let Some(folder) = Folder::with_adapter("watch-long") else { return };
     folder.write("s.json", "{ \"camera\": { \"bgcolor\": [9, 8, 7] } }");

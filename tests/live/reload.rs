@@ -115,6 +115,22 @@ fn a_first_load_that_fails_can_be_mended() {
 }
 
 #[test]
+fn files_beside_the_scene_are_followed_once_it_names_them() {
+    let Some(mut live) = red("scene-side") else { return };
+    live.write("m.side", "first");
+    live.silent();
+    live.write("m.xyz", "1\n\nC 0 0 0\n");
+    assert_eq!(live.taken(), Part::Scene);
+    live.write("m.side", "second");
+    assert_eq!(live.taken(), Part::Scene);
+    assert_eq!(live.engine.scene().map(|scene| scene.name.as_str()), Some("second"));
+    std::fs::remove_file(live.path("m.side")).unwrap();
+    assert_eq!(live.taken(), Part::Scene);
+    live.write("m.side", "third");
+    live.silent();
+}
+
+#[test]
 fn the_scene_is_followed_like_the_style() {
     let Some(mut live) = red("scene") else { return };
     assert_eq!(live.engine.counts().spheres, 2);

@@ -14,7 +14,7 @@ pub const PATIENCE: Duration = Duration::from_secs(20);
 /// How long nothing must happen to count as nothing: longer than what is wrong is held back.
 pub const SILENCE: Duration = Duration::from_millis(600);
 
-/// A folder with `s.json` and `m.xyz`, and an engine that follows them.
+/// A folder with `s.json`, `m.xyz` and maybe a `m.side` that is read with it, and an engine that follows them.
 pub struct Live {
     pub folder: PathBuf,
     pub engine: Engine,
@@ -49,8 +49,17 @@ impl Live {
         let sources = Sources {
             style_file: Some(style.clone()),
             style: Box::new(move || load_style(&style)),
-            scene_file: Some(scene.clone()),
-            scene: Box::new(move || Scene::load_with(&scene, &LoadOptions::default())),
+            scene_files: vec![scene.clone()],
+            scene: Box::new(move || {
+                let mut loaded = Scene::load_with(&scene, &LoadOptions::default())?;
+                // Stands for a file of materials that a mesh names.
+                let beside = scene.with_extension("side");
+                if let Ok(text) = std::fs::read_to_string(&beside) {
+                    loaded.name = text;
+                    loaded.files[0].side_files.push(beside);
+                }
+                Ok(loaded)
+            }),
             shader_folder: Some(folder.join("shaders")),
         };
         Live { engine: Engine::live(gpu, sources), folder }

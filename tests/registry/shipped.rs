@@ -1,9 +1,9 @@
-//! The looks and molecules that the program carries are the files of their folders, and all of them load.
+//! The looks, molecules and meshes that the program carries are the files of their folders, and all of them load.
 
 use restyle::config::{self, Catalog, Source};
 use restyle::engine;
 use restyle::scene::Scene;
-use restyle::shipped::{LOOKS, MOLECULES, Shipped};
+use restyle::shipped::{LOOKS, MOLECULES, SCENES, Shipped};
 
 use super::{assert_none, at, files_below};
 
@@ -55,10 +55,17 @@ fn every_look_loads_without_mistakes() {
 }
 
 #[test]
-fn every_molecule_loads() {
-    let complaints = MOLECULES.iter().filter_map(|molecule| {
-        let error = Scene::from_bytes(molecule.file, molecule.bytes).err()?;
-        Some(format!("molecules/{error}"))
+fn every_scene_loads() {
+    let complaints = SCENES.iter().copied().flatten().filter_map(|shipped| {
+        let error = Scene::from_bytes(shipped.file, shipped.bytes).err()?;
+        Some(error.to_string())
     });
     assert_none(&complaints.collect::<Vec<_>>());
+}
+
+#[test]
+fn no_two_scenes_have_one_name() {
+    let mut names: Vec<&str> = SCENES.iter().copied().flatten().map(|shipped| shipped.name).collect();
+    names.sort_unstable();
+    assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?}");
 }

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use super::catalog::{Catalog, Role};
 use super::param::Param;
 use super::sections::SECTIONS;
-use super::selector::ObjectKind;
+use super::selector::{AttributeValues, ObjectKind};
 
 pub use strips::{Molecule, Strip, strips};
 
@@ -57,14 +57,25 @@ fn selectors(catalog: &Catalog<'_>) -> String {
     for kind in ObjectKind::ALL.iter().filter(|kind| drawn(kind)) {
         let _ = writeln!(text, "| `{}` | {} |", kind.name(), kind.doc());
     }
-    text.push_str("| `*` | Everything. |\n\n| attribute | is |\n|---|---|\n");
+    text.push_str("| `*` | Everything. |\n\n| attribute | of | is |\n|---|---|---|\n");
     for attribute in catalog.attributes() {
-        let _ = writeln!(text, "| `{}` | {} |", attribute.name(), attribute.doc());
+        let kinds = catalog.kinds.iter().filter(|kind| kind.attributes().contains(&attribute));
+        let kinds: Vec<String> = kinds.map(|kind| format!("`{}`", kind.name())).collect();
+        let _ = writeln!(text, "| `{}` | {} | {} |", attribute.name(), kinds.join(", "), attribute.doc());
     }
-    text.push_str(
+    let ranges: Vec<String> = catalog
+        .attributes()
+        .filter(|attribute| attribute.values() != AttributeValues::Texts)
+        .map(|attribute| format!("`{}`", attribute.name()))
+        .collect();
+    let _ = write!(
+        text,
         "\n`*` in a value stands for any characters and `?` for one; upper and lower case differ except in `element`. \
-         A value that holds `]` is quoted: `atom[name=\"A]\"]`. Of two rules that select the same object, the one with \
-         more attributes wins, then a type over `*`, then the later one; a base comes before what extends it.\n",
+         The values of {} are numbers and may be asked for by ranges, which hold their ends: `atom[number=10..40]`, \
+         `atom[b_factor=50..]`, `atom[charge=..-0.5]`. A value that holds `]` is quoted: `atom[name=\"A]\"]`. Of two rules that select the same object, the one with \
+         more attributes wins, then a type over `*`, then the later one; a base comes before what extends it. `restyle info SCENE --selectors` lists \
+         selectors for what a scene has.\n",
+        ranges.join(", ")
     );
     text
 }

@@ -7,16 +7,23 @@ use crate::config::catalog::{Catalog, Role};
 use crate::config::selector::{Attribute, ObjectKind, Selector};
 
 /// Selectors that the editor offers, beside one for each type that is drawn.
-const OFFERED: [(&str, &str); 9] = [
+const OFFERED: [(&str, &str); 16] = [
     ("*", "Everything."),
     ("atom[element=C]", "Atoms of one element."),
     ("atom[element=H]", "Atoms of one element."),
     ("atom[element=N]", "Atoms of one element."),
     ("atom[element=O]", "Atoms of one element."),
     ("atom[residue=HOH]", "Atoms of one residue: water."),
+    ("atom[kind=protein]", "Atoms of amino acids."),
+    ("atom[kind=water]", "Atoms of water."),
+    ("atom[kind=ligand]", "Atoms of ligands."),
+    ("atom[number=10..40]", "Atoms of residues 10 to 40."),
+    ("atom[b_factor=50..]", "Atoms of high temperature factors."),
     ("atom[name=CA]", "Atoms of one name: the backbone's carbon."),
     ("*[chain=A]", "Everything of one chain."),
     ("connector[element=H]", "Bonds that end at an atom of this element."),
+    ("mesh[part=Bolt*]", "Parts of a mesh whose names begin alike."),
+    ("mesh[material=Steel]", "Parts of a mesh that are of one material."),
 ];
 
 /// What the editor says of a key that is no selector.

@@ -3,7 +3,7 @@
 //! A schema that refused what the loader takes would be a mistake, so that each takes all that the loader takes.
 
 use crate::config::color::css_names;
-use crate::config::selector::{Attribute, ObjectKind};
+use crate::config::selector::{Attribute, AttributeValues, ObjectKind};
 
 /// White space as Rust's `trim` has it, which is what `\s` of JavaScript is but for one character each.
 const SPACE: &str = r"[\s\u0085]";
@@ -61,11 +61,41 @@ pub(super) fn selector(kinds: &[Option<ObjectKind>]) -> String {
     let attributes = |kind: Option<ObjectKind>| kind.map_or(&Attribute::ALL[..], ObjectKind::attributes);
     let alternatives = kinds.chunk_by(|a, b| attributes(*a) == attributes(*b)).map(|alike| {
         let kinds: Vec<&str> = alike.iter().map(|kind| kind.map_or(r"\*", ObjectKind::name)).collect();
-        let attributes: Vec<&str> = attributes(alike[0]).iter().map(|attribute| attribute.name()).collect();
-        // In quotes, or up to the ] and not empty.
-        let value = format!(r#""[^"]*"{SPACE}*|'[^']*'{SPACE}*|(?:[^\]"'\s\u0085]|\ufeff)[^\]]*"#);
-        let name = format!(r"{SPACE}*(?:{}){SPACE}*", attributes.join("|"));
-        format!(r"(?:{}){SPACE}*(?:\[{name}={SPACE}*(?:{value})\]{SPACE}*)*", kinds.join("|"))
+        let conditions = [AttributeValues::Texts, AttributeValues::Numbers, AttributeValues::Measures].map(|values| {
+            let such = attributes(alike[0]).iter().filter(|attribute| attribute.values() == values);
+            let names: Vec<&str> = such.map(|attribute| attribute.name()).collect();
+            (!names.is_empty()).then(|| format!("(?:{}){SPACE}*={SPACE}*(?:{})", names.join("|"), value(values)))
+        });
+        let conditions: Vec<String> = conditions.into_iter().flatten().collect();
+        format!(r"(?:{}){SPACE}*(?:\[{SPACE}*(?:{})\]{SPACE}*)*", kinds.join("|"), conditions.join("|"))
     });
     format!("^{SPACE}*(?:{})$", alternatives.collect::<Vec<_>>().join("|"))
+}
+
+/// What may follow `=`: in quotes, or up to the `]` and not empty.
+fn value(values: AttributeValues) -> String {
+    let first = r#"[^\]"'\s\u0085]|\ufeff"#;
+    let quoted = |inner: &dyn Fn(char) -> String| format!(r#""{}"{SPACE}*|'{}'{SPACE}*"#, inner('"'), inner('\''));
+    // Any characters but the end, and no two dots side by side.
+    let parted = |end: char| format!(r"(?:\.?[^.{end}])*\.?");
+    let range = range();
+    match values {
+        AttributeValues::Texts => {
+            let any = |end: char| format!("[^{end}]*");
+            format!(r"{}|(?:{first})[^\]]*", quoted(&any))
+        }
+        AttributeValues::Numbers => {
+            let some = |end: char| format!("(?:{}|{range})", parted(end));
+            let rest = r"(?:\.?[^.\]])*\.?";
+            let no_dot = r#"[^\]"'\s\u0085.]|\ufeff"#;
+            format!(r"{}|(?:{no_dot}){rest}|\.(?:[^.\]]{rest})?|{range}", quoted(&some))
+        }
+        AttributeValues::Measures => format!("{}|{range}", quoted(&|_| range.clone())),
+    }
+}
+
+/// `A..B`, `A..` or `..B`.
+fn range() -> String {
+    let number = r"[-+]?[0-9]+(?:\.[0-9]+)?";
+    format!(r"{SPACE}*(?:{number}{SPACE}*\.\.{SPACE}*(?:{number})?|\.\.{SPACE}*{number}){SPACE}*")
 }

@@ -148,7 +148,7 @@ pub(super) fn read(
             (Molecule::default(), assembly)
         }
     };
-    Ok(Scene::of_file(file, molecule, assembly, report, side_files))
+    Ok(Scene::of_file(file, sniff(file, bytes), molecule, assembly, report, side_files))
 }
 
 /// What a file holds.

@@ -39,6 +39,29 @@ pub enum Format {
     Unknown,
 }
 
+impl Format {
+    /// What people call it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Pdb => "PDB",
+            Self::Cif => "CIF",
+            Self::BinaryCif => "BinaryCIF",
+            Self::Xyz => "XYZ",
+            Self::Obj => "OBJ",
+            Self::Off => "OFF",
+            Self::Ply => "PLY",
+            Self::Stl => "STL",
+            Self::Gltf => "glTF",
+            Self::ThreeMf => "3MF",
+            Self::Sdf => "SDF",
+            Self::Mol2 => "MOL2",
+            Self::Pqr => "PQR",
+            Self::Foreign(what) => what,
+            Self::Unknown => "unknown",
+        }
+    }
+}
+
 /// Bytes at the start that are looked at.
 const HEAD: usize = 1 << 16;
 

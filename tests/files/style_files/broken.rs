@@ -155,7 +155,7 @@ s.json:1:35 (lights[1]): "light" must be an object, not the number 7"#,
     ),
     (
         r#"{ "mapping": { "mesh[element=O]": "basic" } }"#,
-        r#"s.json:1:16 (mapping["mesh[element=O]"]): selector "mesh[element=O]": "mesh" has no attribute "element"; allowed: part, material, file"#,
+        r#"s.json:1:16 (mapping["mesh[element=O]"]): selector "mesh[element=O]": "mesh" has no attribute "element"; allowed: part, material, node, file"#,
     ),
     (
         r#"{ "mapping": { "atom[element=O": "basic" } }"#,

@@ -101,7 +101,7 @@ fn an_outline_wider_than_what_it_surrounds_is_told() {
         ))
     };
     let water = scene("3\n\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n");
-    let in_scene = |geometry, hull_size| told(&lint::lint_with(&toon(geometry, hull_size), &water.molecule));
+    let in_scene = |geometry, hull_size| told(&lint::lint_with(&toon(geometry, hull_size), &water));
     let alone = |geometry, hull_size| told(&lint::lint(&toon(geometry, hull_size)));
     let none = Vec::<String>::new();
 
@@ -143,11 +143,11 @@ fn an_outline_of_connectors_is_held_against_their_radius() {
     ];
     assert_eq!(told(&lint::lint(&style)), expected);
     let methane = scene("2\n\nC 0 0 0\nH 1.09 0 0\n");
-    assert_eq!(told(&lint::lint_with(&style, &methane.molecule)), expected);
+    assert_eq!(told(&lint::lint_with(&style, &methane)), expected);
     // Where it draws nothing, it is nobody's outline.
     let helium = scene("1\n\nHe 0 0 0\n");
     let nothing = "s.json:1:16 (mapping.connector): warning: selector \"connector\" matches nothing in this scene";
-    assert_eq!(told(&lint::lint_with(&style, &helium.molecule)), [nothing]);
+    assert_eq!(told(&lint::lint_with(&style, &helium)), [nothing]);
 }
 
 #[test]
