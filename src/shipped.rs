@@ -46,7 +46,7 @@ pub const MOLECULES: &[Shipped] = shipped!(
 );
 
 /// The meshes.
-pub const MESHES: &[Shipped] = shipped!("meshes",);
+pub const MESHES: &[Shipped] = shipped!("meshes", "gearbox"."glb", "bracket"."glb");
 
 /// Everything that can be a scene. No name is in two of them.
 pub const SCENES: [&[Shipped]; 2] = [MOLECULES, MESHES];

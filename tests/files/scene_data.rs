@@ -91,7 +91,7 @@ fn bad_files() -> Vec<(&'static str, Outcome)> {
         ("xyz_no_comment_line.xyz", Loads(24, &[K::CountMended])),
         ("xyz_symbols_unknown.xyz", Loads(3, &[K::ElementUnknown])),
         ("wrong_ext_cif_as.pdb", Loads(327, &[])),
-        ("wrong_ext_png_as.obj", Fails(": is a PNG picture, not a molecule in PDB or XYZ format; convert it to PDB or XYZ")),
+        ("wrong_ext_png_as.obj", Fails(": is a PNG picture, no molecule and no mesh; molecules are read as mmCIF, ")),
     ]
 }
 

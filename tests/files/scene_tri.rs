@@ -73,7 +73,7 @@ fn bad_files() -> Vec<(&'static str, Outcome)> {
         ("assimp_malformed.obj", Loads(8, &[K::FaceOutOfRange, K::UnknownMaterial])),
         ("box_UTF16BE.obj", Loads(12, &[K::UnknownMaterial])),
         ("busted.STL", Loads(3878, WHOLE)),
-        ("lfs_pointer.off", Fails(": is a Git LFS pointer instead of the file itself, not a molecule in PDB or XYZ format; fetch it with: git lfs pull")),
+        ("lfs_pointer.off", Fails(": is a Git LFS pointer instead of the file itself, no molecule and no mesh; fetch it with: git lfs pull")),
         ("mirror.ply", Loads(286, WHOLE)),
         ("nancolor.obj", Loads(12, &[K::NoColor])),
         ("obj_bom.obj", Loads(5856, WHOLE)),

@@ -125,11 +125,13 @@ pub(super) fn read(
         Format::Mol2 => mol2::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Pqr => pqr::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Foreign(what) => {
-            return unsupported(format!("is {what}, not a molecule in PDB or XYZ format; {}", way_out(what)));
+            return unsupported(format!("is {what}, no molecule and no mesh; {}", way_out(what)));
         }
         Format::Unknown => {
             return unsupported(
-                "is in no format that is known here; save the molecule as PDB or XYZ, with that extension".to_string(),
+                "is in no format that is known here; save a molecule as mmCIF, PDB, SDF or XYZ, a mesh as glTF, OBJ, STL or \
+                 PLY, with that extension"
+                    .to_string(),
             );
         }
     };
@@ -168,6 +170,6 @@ fn way_out(what: &str) -> &'static str {
     } else if what.contains("UTF-16") {
         "save it as UTF-8"
     } else {
-        "convert it to PDB or XYZ"
+        "molecules are read as mmCIF, PDB, SDF, MOL2, PQR and XYZ, meshes as glTF, OBJ, STL, PLY, OFF and 3MF"
     }
 }
