@@ -129,6 +129,16 @@ fn a_round_surface_is_smooth() {
 }
 
 #[test]
+fn many_places_are_shared_out_and_put_together_again() {
+    let raw = torus_of(512, 300);
+    let expected = raw.triangles.clone();
+    let (shape, report) = alone(raw);
+    assert!(report.is_empty());
+    assert_eq!(shape.positions.len(), 512 * 300);
+    assert!(shape.triangles == expected);
+}
+
+#[test]
 fn a_cylinder_is_smooth_around_and_sharp_at_its_rims() {
     let (shape, report) = alone(cylinder(64));
     assert!(report.is_empty());

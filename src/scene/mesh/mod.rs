@@ -1,7 +1,8 @@
 //! Meshes as the renderer needs them: shapes of triangles, and the parts that place them.
 //!
 //! ```text
-//! import/{obj, stl, ply, off, gltf, threemf}  ->  RawMesh  ->  mesh/{weld, winding, normals, hull}  ->  Assembly
+//! import/{obj, stl, ply, off, gltf, threemf}  ->  RawMesh  ->  build  ->  Assembly
+//!     build: for each shape  place  ->  mend { weld -> links -> winding -> vertices { hull } }
 //! ```
 //! Importers give [`RawMesh`]: positions in f64, triangles, what the file names. [`Assembly::build`] mends it and moves it
 //! near the origin, where single precision is fine enough.

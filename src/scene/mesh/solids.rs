@@ -69,9 +69,13 @@ pub fn sheet(
     raw
 }
 
-/// A ring of circumference about 2 pi, a tube of radius 0.3.
+/// A ring of radius 1, a tube of radius 0.3.
 pub fn torus() -> RawShape {
-    sheet(48, 24, true, true, |u, v| {
+    torus_of(48, 24)
+}
+
+pub fn torus_of(columns: u32, rows: u32) -> RawShape {
+    sheet(columns, rows, true, true, |u, v| {
         let (out, up) = (1.0 + 0.3 * (v * TAU).cos(), 0.3 * (v * TAU).sin());
         DVec3::new((u * TAU).cos() * out, (u * TAU).sin() * out, up)
     })

@@ -4,6 +4,9 @@
 //! angle, and a group's normal is the mean of its faces', each weighted by its angle at the place [Thurmer1998].
 
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::ops::Range;
+use std::sync::atomic::AtomicU32;
+use std::sync::atomic::Ordering::Relaxed;
 
 use glam::{DVec3, Vec3};
 
@@ -12,7 +15,6 @@ use super::links::{Links, SHARED};
 use super::place::unit_normal;
 use super::weld::Surface;
 use super::{Shape, pack_hull, pack_normal};
-use crate::scene::Sphere;
 
 /// Cosine of the crease angle, 35 degrees: smooth shading over less, a hard edge over more.
 const CREASE: f32 = 0.819_152;
@@ -21,6 +23,9 @@ const HALF_CREASE: f32 = 0.953_717;
 /// Triangles lower than this, in shapes of size 1 to 2, have normals made of rounding errors.
 const NEEDLE: f64 = 1e-6;
 
+/// So many places are worth a thread of their own, and so many threads are worth it.
+const PLACES_PER_THREAD: u32 = 1 << 16;
+const MOST_THREADS: u32 = 8;
 /// So few corners are searched one by one.
 const FEW: usize = 16;
 
@@ -111,49 +116,115 @@ pub(super) struct Placing {
 }
 
 /// Makes the vertices and triangles of a shape; its sphere is not filled in. `links` must hold rings.
-pub(super) fn make(surface: Surface, links: Links, known: &Known, placing: Placing) -> Shape {
-    let mut links = links;
-    // A corner's place on the ring is not needed any more once its vertex is known: the triangles grow there.
-    let mut rings = std::mem::take(&mut links.twins);
-    let num_places = surface.positions.len();
-    let mut shape = Shape {
-        positions: Vec::with_capacity(num_places),
-        normals: Vec::with_capacity(num_places),
-        hulls: Vec::with_capacity(num_places),
-        colors: Vec::with_capacity(if surface.colors.is_empty() { 0 } else { num_places }),
-        triangles: Vec::new(),
-        sphere: Sphere { center: Vec3::ZERO, radius: 0.0 },
+pub(super) fn make(surface: Surface, mut links: Links, known: &Known, placing: Placing) -> Shape {
+    // A corner's place on the ring is not needed any more once its vertex is known: the triangles grow there. Each corner
+    // belongs to one place, and each place to one thread.
+    let twins = std::mem::take(&mut links.twins);
+    let rings: Vec<[AtomicU32; 3]> = twins.into_iter().map(|ring| ring.map(AtomicU32::new)).collect();
+    let num_places = surface.positions.len() as u32;
+    let num_threads = match std::thread::available_parallelism() {
+        Ok(threads) => (threads.get() as u32).min(num_places / PLACES_PER_THREAD).clamp(1, MOST_THREADS),
+        Err(_) => 1,
     };
-    let mut around = Around::default();
-    for place in 0..num_places as u32 {
-        let corners = links.corners_at(place);
-        let Some((mean, hull)) = around.gather(&surface, known, corners, place) else { continue };
-        around.find_keys(&surface, known, corners, &rings, mean);
-        let position = (surface.positions[place as usize] * placing.scale + placing.middle).as_vec3();
-        let mut last = None;
-        for &(key, at) in &around.keys {
-            if last != Some(key) {
-                last = Some(key);
-                make_room(&mut shape);
-                shape.positions.push(position);
-                shape.normals.push(key.0);
-                shape.hulls.push(hull);
-                if !surface.colors.is_empty() {
-                    shape.colors.push(key.1);
-                }
+    let end = |thread: u32| (u64::from(num_places) * u64::from(thread) / u64::from(num_threads)) as u32;
+    let ranges: Vec<Range<u32>> = (0..num_threads).map(|thread| end(thread)..end(thread + 1)).collect();
+    let task = Task { surface: &surface, links: &links, known, placing, rings: &rings };
+    let chunks: Vec<Shape> = std::thread::scope(|scope| {
+        let others: Vec<_> = ranges[1..].iter().map(|range| scope.spawn(|| task.vertices_at(range.clone()))).collect();
+        let first = task.vertices_at(ranges[0].clone());
+        let join = |thread: std::thread::ScopedJoinHandle<Shape>| {
+            thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+        };
+        std::iter::once(first).chain(others.into_iter().map(join)).collect()
+    });
+    let mut num_before = 0;
+    for (range, chunk) in ranges.into_iter().zip(&chunks) {
+        if num_before > 0 {
+            for &corner in range.flat_map(|place| links.corners_at(place)) {
+                let vertex = &rings.as_flattened()[corner as usize];
+                vertex.store(vertex.load(Relaxed).wrapping_add(num_before), Relaxed);
             }
-            rings.as_flattened_mut()[corners[at as usize] as usize] = shape.positions.len() as u32 - 1;
         }
+        num_before += chunk.positions.len() as u32;
     }
+    drop((surface, links));
+    let mut shape = joined(chunks);
     let mut is_flat = known.is_flat.iter();
-    rings.retain(|_| is_flat.next() != Some(&true));
-    shape.triangles = rings;
+    shape.triangles = rings.into_iter().map(|ring| ring.map(AtomicU32::into_inner)).collect();
+    shape.triangles.retain(|_| is_flat.next() != Some(&true));
+    shape.triangles.shrink_to_fit();
+    shape
+}
+
+/// The vertices of all chunks in one shape.
+fn joined(chunks: Vec<Shape>) -> Shape {
+    let num_vertices: usize = chunks.iter().map(|chunk| chunk.positions.len()).sum();
+    let mut chunks = chunks.into_iter();
+    let mut shape = chunks.next().unwrap_or_default();
+    let num_more = num_vertices - shape.positions.len();
+    if num_more > 0 {
+        shape.positions.reserve_exact(num_more);
+        shape.normals.reserve_exact(num_more);
+        shape.hulls.reserve_exact(num_more);
+    }
+    for chunk in chunks {
+        shape.positions.extend(chunk.positions);
+        shape.normals.extend(chunk.normals);
+        shape.hulls.extend(chunk.hulls);
+        shape.colors.extend(chunk.colors);
+    }
     shape.positions.shrink_to_fit();
     shape.normals.shrink_to_fit();
     shape.hulls.shrink_to_fit();
     shape.colors.shrink_to_fit();
-    shape.triangles.shrink_to_fit();
     shape
+}
+
+/// What all threads read; they write different corners of `rings`.
+struct Task<'a> {
+    surface: &'a Surface,
+    links: &'a Links,
+    known: &'a Known<'a>,
+    placing: Placing,
+    rings: &'a [[AtomicU32; 3]],
+}
+
+impl Task<'_> {
+    /// The vertices at a range of places; the corners there get their numbers, counted from the range's first one.
+    fn vertices_at(&self, places: Range<u32>) -> Shape {
+        let Task { surface, links, known, placing, rings } = *self;
+        let num_places = places.len();
+        let mut shape = Shape {
+            positions: Vec::with_capacity(num_places),
+            normals: Vec::with_capacity(num_places),
+            hulls: Vec::with_capacity(num_places),
+            colors: Vec::with_capacity(if surface.colors.is_empty() { 0 } else { num_places }),
+            ..Shape::default()
+        };
+        let mut around = Around::default();
+        for place in places {
+            let corners = links.corners_at(place);
+            let Some((mean, hull)) = around.gather(surface, known, corners, place) else { continue };
+            around.find_keys(surface, known, corners, rings, mean);
+            let position = (surface.positions[place as usize] * placing.scale + placing.middle).as_vec3();
+            let mut last = None;
+            for &(key, at) in &around.keys {
+                if last != Some(key) {
+                    last = Some(key);
+                    make_room(&mut shape);
+                    shape.positions.push(position);
+                    shape.normals.push(key.0);
+                    shape.hulls.push(hull);
+                    if !surface.colors.is_empty() {
+                        shape.colors.push(key.1);
+                    }
+                }
+                let vertex = shape.positions.len() as u32 - 1;
+                rings.as_flattened()[corners[at as usize] as usize].store(vertex, Relaxed);
+            }
+        }
+        shape
+    }
 }
 
 /// Grows the lists by an eighth where they are full: doubling them would cost more than all else here.
@@ -203,7 +274,7 @@ impl Around {
     }
 
     /// Finds the normal and colour of each corner and sorts by them.
-    fn find_keys(&mut self, surface: &Surface, known: &Known, corners: &[u32], rings: &[[u32; 3]], mean: Vec3) {
+    fn find_keys(&mut self, surface: &Surface, known: &Known, corners: &[u32], rings: &[[AtomicU32; 3]], mean: Vec3) {
         self.keys.clear();
         let mut is_grouped = false;
         let smooth = pack_normal(mean);
@@ -234,11 +305,11 @@ impl Around {
     }
 
     /// Parts the faces into smooth groups and finds the normal of each.
-    fn group(&mut self, corners: &[u32], rings: &[[u32; 3]], mean: Vec3) {
+    fn group(&mut self, corners: &[u32], rings: &[[AtomicU32; 3]], mean: Vec3) {
         let Around { faces, groups, is_led_to, sums, .. } = self;
         let rings = rings.as_flattened();
         let following = |at: u32| {
-            let corner = rings[corners[at as usize] as usize];
+            let corner = rings[corners[at as usize] as usize].load(Relaxed);
             if corner >= SHARED {
                 None
             } else if corners.len() <= FEW {
