@@ -196,7 +196,8 @@ mod tests {
         // Turned first, then shifted.
         assert_eq!(drawn(Some("2")), [[10, 1, 0], [10, 2, 0]]);
         let molecule = load(Some("2")).expect("a scene").molecule;
-        assert_eq!((molecule.copies.len(), molecule.copies[0].atoms.as_slice()), (1, [0..2].as_slice()));
+        let ranges = &molecule.copies[0].atoms;
+        assert_eq!((molecule.copies.len(), ranges.len(), ranges[0].clone()), (1, 1, 0..2));
     }
 
     #[test]
