@@ -218,7 +218,6 @@ fn five_thousand_damaged_files_neither_panic_nor_break_promises() {
         let bytes = mutate(original, &mut random);
         let model = [ModelChoice::First, ModelChoice::All, ModelChoice::Number(seed % 3)][random.below(3)];
         let assembly = [None, None, Some("1"), Some("cell")][random.below(4)].map(str::to_string);
-        let assembly = (name == "copies.pdb" && random.below(2) == 0).then(|| "1".to_string());
         match Scene::from_bytes_with(name, &bytes, &LoadOptions { model, assembly }) {
             Ok(scene) => {
                 assert_sound(&scene.molecule);
