@@ -1,4 +1,4 @@
-//! Five thousand damaged files, seeded: none may panic, and none may break what a molecule promises.
+//! Thousands of damaged files, seeded: none may panic, and none may break what molecules and meshes promise.
 
 use restyle::scene::{LoadOptions, ModelChoice, Molecule, Scene};
 use std::path::PathBuf;
@@ -196,6 +196,72 @@ fn assert_sound(molecule: &Molecule) {
     }
     let ends = |i: usize| (molecule.bonds[i].a, molecule.bonds[i].b);
     assert!((1..molecule.bonds.len()).all(|i| ends(i - 1) < ends(i)), "sorted and unique");
+}
+
+/// Small meshes of each kind with most of what the kind has; the last is binary.
+fn small_meshes() -> Vec<(String, Vec<u8>)> {
+    let obj = "mtllib a.mtl\no box\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0 1 0 1 1 1\nvn 0 0 1\ng lid\n\
+        usemtl red\nf 1//1 2//1 3//1 4//1\nusemtl blue\nf -4 -3 \\\n -2\nf 1 2 3 4 2\n";
+    let stl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e0 0\nendloop\nendfacet\n\
+        endsolid a\nsolid b\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 5\nendloop\nendfacet\n\
+        endsolid b\n";
+    let header = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n\
+        property uchar green\nproperty uchar blue\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n";
+    let ply = format!(
+        "ply\nformat ascii 1.0\n{header}0 0 0 9 9 9\n1 0 0 9 9 9\n1 1 0 9 9 9\n0 1 0 9 9 9\n3 0 1 2\n4 0 1 2 3\n"
+    );
+    let off = "COFF\n4 2 0\n0 0 0 255 0 0 255\n1 0 0 0 0 0 255\n1 1 0 0 0 0 255\n0 1 0 0 0 0 255\n3 0 1 2\n4 0 1 2 3\n";
+    let mut binary = format!("ply\nformat binary_little_endian 1.0\n{header}").into_bytes();
+    for [x, y] in [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0_f32]] {
+        [x, y, 0.0].iter().for_each(|value| binary.extend(value.to_le_bytes()));
+        binary.extend([9, 9, 9]);
+    }
+    for face in [&[0_i32, 1, 2][..], &[0, 1, 2, 3]] {
+        binary.push(face.len() as u8);
+        face.iter().for_each(|index| binary.extend(index.to_le_bytes()));
+    }
+    let mut facets = b"solid but binary".to_vec();
+    facets.resize(80, b' ');
+    facets.extend(4_u32.to_le_bytes());
+    for i in 0..4 {
+        let floats = [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, i as f32];
+        floats.iter().for_each(|value| facets.extend(value.to_le_bytes()));
+        facets.extend([0, 0]);
+    }
+    let texts = [("a.obj", obj), ("a.stl", stl), ("a.ply", ply.as_str()), ("a.off", off)];
+    let texts = texts.map(|(name, text)| (name.to_string(), text.as_bytes().to_vec()));
+    texts.into_iter().chain([("b.ply".to_string(), binary), ("b.stl".to_string(), facets)]).collect()
+}
+
+#[test]
+fn four_thousand_damaged_meshes_neither_panic_nor_break_promises() {
+    let files = small_meshes();
+    for (name, bytes) in &files {
+        assert!(Scene::from_bytes(name, bytes).is_ok(), "{name}");
+    }
+    let mut random = Random(1987);
+    let (mut num_loaded, mut num_refused) = (0, 0);
+    for _ in 0..NUM_MUTATIONS * 2 {
+        let (name, original) = &files[random.below(files.len())];
+        let bytes = mutate(original, &mut random);
+        match Scene::from_bytes(name, &bytes) {
+            Ok(scene) => {
+                num_loaded += 1;
+                for shape in &scene.assembly.shapes {
+                    let count = shape.positions.len();
+                    assert!(shape.triangles.as_flattened().iter().all(|&index| (index as usize) < count));
+                    assert!(shape.colors.is_empty() || shape.colors.len() == count);
+                }
+            }
+            Err(error) => {
+                let message = error.to_string();
+                assert!(message.starts_with(name.as_str()) && message.is_ascii(), "{message}");
+                num_refused += 1;
+            }
+        }
+    }
+    println!("{num_loaded} loaded, {num_refused} refused");
+    assert!(num_loaded > 400 && num_refused > 400, "{num_loaded} {num_refused}");
 }
 
 #[test]

@@ -109,7 +109,7 @@ fn bad_files() -> Vec<(&'static str, Outcome)> {
         ("ply_crlf_header_binary.ply", Loads(1610, WHOLE)),
         ("ply_empty_header.ply", Fails(": holds no triangles; export the model's surfaces, or as a mesh")),
         ("ply_face_index_out_of_range.ply", Loads(1, &[K::FaceOutOfRange])),
-        ("ply_list_count_255.ply", Fails(": byte 293: the file ends inside face 1 of 3, or is damaged there; was it saved or downloaded completely?")),
+        ("ply_list_count_255.ply", Fails(": byte 293: the file ends in number 1 of 3 \"face\" elements, or is damaged there; was it saved or downloaded completely?")),
         ("ply_negative_count.ply", Fails(":12: \"-5\" is no number of \"face\" elements; export the model again")),
         ("ply_no_end_header.ply", Fails(":14: the header has no end_header; was the file saved or downloaded completely?")),
         ("ply_odd_property_order.ply", Loads(4, WHOLE)),

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::{DVec3, Vec3};
 
-use super::vertex::LARGEST;
+use super::vertex::is_place;
 use crate::scene::mesh::{RawMesh, RawNormals, RawPart, RawShape, Triangulator};
 use crate::scene::report::{NoteKind, Report};
 
@@ -36,11 +36,11 @@ impl Faces {
 
     /// Adds a vertex; one that is NaN, infinite or absurd takes its faces with it.
     pub(super) fn push(&mut self, position: DVec3) {
-        let is_place = position.abs().max_element() <= LARGEST && !position.is_nan();
-        if !is_place {
+        let is_there = is_place(position);
+        if !is_there {
             self.nowhere.push(self.positions.len() as u32);
         }
-        self.positions.push(if is_place { position } else { DVec3::ZERO });
+        self.positions.push(if is_there { position } else { DVec3::ZERO });
     }
 
     /// Vertices so far.

@@ -11,6 +11,7 @@ use glam::{DVec3, Vec3};
 use self::body::{Body, Cut};
 use self::header::{Element, Encoding, Header, Scalar};
 use super::faces::{Faces, WHITE};
+use super::lines::quote;
 use super::{Import, SceneError};
 use crate::scene::mesh::RawMesh;
 use crate::scene::report::NoteKind;
@@ -28,6 +29,7 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<RawMesh, Sce
     let mut reader = Reader::default();
     let mut cut = None;
     for element in &elements {
+        (reader.row, reader.row_at) = (None, body.at);
         let result = match element.name.as_slice() {
             b"vertex" if !reader.has_vertices => {
                 let vertices = reader.vertices(import, &mut body, element)?;
@@ -43,8 +45,9 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<RawMesh, Sce
             _ => body.skip(element),
         };
         if result.is_err() {
-            let name = String::from_utf8_lossy(&element.name).into_owned();
-            cut = Some((reader.row_at, format!("{name} {} of {}", reader.row + 1, element.count)));
+            let name = quote(&element.name);
+            let row = reader.row.map_or(String::new(), |row| format!("number {} of ", row + 1));
+            cut = Some((reader.row_at, format!("{row}{} {name} elements", element.count)));
             break;
         }
     }
@@ -52,8 +55,7 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<RawMesh, Sce
     let mesh = faces.finish(normals, colors);
     match cut {
         Some((at, row)) if mesh.parts.is_empty() => {
-            let what =
-                format!("the file ends inside {row}, or is damaged there; was it saved or downloaded completely?");
+            let what = format!("the file ends in {row}, or is damaged there; was it saved or downloaded completely?");
             Err(body.error(import, at, what))
         }
         Some((_, row)) => {
@@ -129,8 +131,8 @@ struct Reader {
     faces: Faces,
     normals: Vec<Vec3>,
     colors: Vec<[u8; 3]>,
-    /// The row that is being read, from 0, and where it begins.
-    row: u64,
+    /// The row that is being read, from 0, and where it begins; none of elements that are passed over.
+    row: Option<u64>,
     row_at: usize,
 }
 
@@ -167,7 +169,7 @@ impl Reader {
         let kinds = [6, 7, 8].map(|wanted| kind_of(wanted).map_or(Scalar::U8, |(_, property)| property.scalar));
         let mut list = Vec::new();
         for row in 0..element.count {
-            (self.row, self.row_at) = (row, body.at);
+            (self.row, self.row_at) = (Some(row), body.at);
             let mut values = [0.0; ROLES.len() + 1];
             for (property, &role) in element.properties.iter().zip(&roles) {
                 if property.counter.is_none() {
@@ -217,7 +219,7 @@ impl Reader {
         self.faces.reserve(0, (element.count as usize).min(most / 2));
         let (mut list, mut other) = (Vec::new(), Vec::new());
         for row in 0..element.count {
-            (self.row, self.row_at) = (row, body.at);
+            (self.row, self.row_at) = (Some(row), body.at);
             let mut color = WHITE;
             for (i, property) in element.properties.iter().enumerate() {
                 let into = if i == indices { &mut list } else { &mut other };

@@ -8,7 +8,7 @@ mod ascii;
 
 use glam::{DAffine3, DVec3};
 
-use super::vertex::{LARGEST, UniquePositions};
+use super::vertex::{UniquePositions, is_place};
 use super::{Import, SceneError};
 use crate::scene::mesh::{RawMesh, RawPart, RawShape};
 use crate::scene::report::NoteKind;
@@ -74,7 +74,7 @@ fn binary(import: &mut Import<'_>, bytes: &[u8]) -> Result<RawMesh, SceneError> 
         for (value, word) in corners.iter_mut().flat_map(|corner| corner.as_mut()).zip(&words[3..]) {
             *value = f64::from(f32::from_le_bytes(*word));
         }
-        if corners.iter().all(|corner| corner.abs().max_element() <= LARGEST) {
+        if corners.iter().all(|&corner| is_place(corner)) {
             solid.push(corners);
         } else {
             import.report.note(NoteKind::FaceNowhere, None, || format!("facet {}", number + 1));

@@ -8,7 +8,12 @@ use super::{Import, SceneError};
 use crate::scene::report::NoteKind;
 
 /// The largest coordinate that is read: products of three still fit double precision.
-pub(super) const LARGEST: f64 = 1e100;
+const LARGEST: f64 = 1e100;
+
+/// Whether a position is one: neither NaN nor infinite nor absurd.
+pub(super) fn is_place(position: DVec3) -> bool {
+    position.abs().cmple(DVec3::splat(LARGEST)).all()
+}
 
 impl Import<'_> {
     /// The place of three words; none if one is no finite number. Nothing is noted: the face that needs it is.
@@ -139,6 +144,17 @@ mod tests {
         }
         assert_eq!(unique.number(DVec3::new(-0.0, 0.0, -0.0)), 0);
         assert_eq!(unique.take().len(), 9000);
+    }
+
+    #[test]
+    fn nan_is_nowhere_on_any_axis() {
+        for axis in 0..3 {
+            for (value, is_there) in [(f64::NAN, false), (f64::NEG_INFINITY, false), (-1e101, false), (-1e100, true)] {
+                let mut position = DVec3::ONE;
+                position[axis] = value;
+                assert_eq!(is_place(position), is_there, "{position}");
+            }
+        }
     }
 
     #[test]

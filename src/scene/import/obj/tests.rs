@@ -55,7 +55,7 @@ fn parts_are_runs_of_object_group_and_material() {
 
 #[test]
 fn any_encoding_line_end_and_broken_line_will_do() {
-    let text = format!("# caf\u{e9}\\\ng K\u{f6}rper\n{SQUARE}f 1 2 \\\n 3 \\\n4 # square\n");
+    let text = format!("# caf\u{e9}\\\ng K\u{f6}rper\n{SQUARE}f 1 2\\\n3 \\\n  4 # square\n");
     let latin: Vec<u8> = text.chars().map(|letter| letter as u8).collect();
     let utf16 = |bytes: fn(u16) -> [u8; 2]| -> Vec<u8> {
         "\u{feff}".encode_utf16().chain(text.encode_utf16()).flat_map(bytes).collect()

@@ -99,9 +99,12 @@ fn counts_are_held_against_the_bytes() {
     let bytes = binary(true);
     let cut = message(&bytes[..bytes.len() - 1]);
     let at = bytes.len() - 14;
-    assert!(cut.starts_with(&format!("a.ply: byte {at}: the file ends inside face 1 of 1")), "{cut}");
+    assert!(
+        cut.starts_with(&format!("a.ply: byte {at}: the file ends in number 1 of 1 \"face\" elements, or")),
+        "{cut}"
+    );
     let long = message(square(1, "255 0 1 2\n").as_bytes());
-    assert!(long.starts_with("a.ply:16: the file ends inside face 1 of 1"), "{long}");
+    assert!(long.starts_with("a.ply:16: the file ends in number 1 of 1 \"face\" elements, or"), "{long}");
     // Nothing to read, however often.
     let nothing = text.replace("element vertex", "element nothing 18446744073709551615\nelement vertex");
     assert_eq!(loaded(nothing.as_bytes()).0.shapes[0].triangles.len(), 1);

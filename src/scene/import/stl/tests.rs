@@ -62,9 +62,11 @@ fn counts_of_binary_files_are_not_believed() {
 #[test]
 fn facets_without_a_place_are_left_out() {
     let mut bytes = binary_fan(3, b"fan", 3);
-    bytes[84 + 50 + 12..84 + 50 + 16].copy_from_slice(&f32::INFINITY.to_le_bytes());
-    let (mesh, report) = loaded(&bytes);
-    assert_eq!(mesh.shapes[0].triangles.len(), 2);
+    for value in [f32::INFINITY, f32::NAN] {
+        bytes[84 + 50 + 12..84 + 50 + 16].copy_from_slice(&value.to_le_bytes());
+        assert_eq!(loaded(&bytes).0.shapes[0].triangles.len(), 2);
+    }
+    let (_, report) = loaded(&bytes);
     assert_eq!(report.to_string(), "1 face left out: a coordinate is no number (facet 2)\n");
 }
 
