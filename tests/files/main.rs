@@ -1,6 +1,7 @@
 //! Files as users have them: molecules, styles, and what is said of those that do not load.
 
 mod scene_data;
+mod scene_gltf;
 mod scene_mutations;
 mod scene_shipped;
 mod style_files;
