@@ -191,5 +191,5 @@ fn damaged_meshes_neither_panic_nor_break_promises() {
         }
     }
     println!("{num_loaded} loaded, {num_refused} refused");
-    assert!(num_loaded > 200 && num_refused > 200, "{num_loaded} {num_refused}");
+    assert!(num_loaded > 100 && num_refused > 200, "{num_loaded} {num_refused}");
 }
