@@ -8,7 +8,7 @@
 //! import/{sniff, pdb, cif/, sdf, ...}  ->  builder  ->  { altloc, bonds -> { templates, grid }, sphere }  ->  molecule
 //! import/...  ->  mesh/raw  ->  mesh/build  ->  mesh/assembly
 //! ```
-//! A new format is one file in `import/` that feeds a [`MoleculeBuilder`] or a [`RawMesh`], and a line in `import/mod.rs`.
+//! A new format is one file or folder in `import/` that feeds a [`MoleculeBuilder`] or a [`RawMesh`], and a line in `import/mod.rs`.
 
 mod altloc;
 mod aov;

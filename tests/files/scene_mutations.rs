@@ -299,3 +299,65 @@ fn five_thousand_damaged_files_neither_panic_nor_break_promises() {
     println!("{num_loaded} loaded, {num_refused} refused");
     assert!(num_loaded > 200 && num_refused > 200, "{num_loaded} {num_refused}");
 }
+
+/// A glTF of one triangle, whose numbers are all of what can be wrong in one.
+const GLTF: &[u8] = br#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"name":"a","children":[1],"scale":[1,2,3]},{"mesh":0,"rotation":[0,0,0,1]}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":4,"material":0}]}],"materials":[{"name":"red"}],
+"accessors":[{"bufferView":0,"byteOffset":0,"componentType":5126,"count":3,"type":"VEC3"},
+{"bufferView":1,"componentType":5121,"count":3,"type":"SCALAR"}],
+"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":3}],
+"buffers":[{"byteLength":39,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAEC"}]}"#;
+
+/// What importers of glTF stumble over, in place of a number.
+const NASTY_VALUES: &[&str] = &[
+    "-1",
+    "0",
+    "1",
+    "7",
+    "255",
+    "5123",
+    "4294967296",
+    "18446744073709551615",
+    "1e308",
+    "null",
+    "[]",
+    "{}",
+    "\"x\"",
+    "",
+];
+
+#[test]
+fn damaged_meshes_neither_panic_nor_break_promises() {
+    let mut random = Random(2017);
+    let (mut num_loaded, mut num_refused) = (0, 0);
+    for _ in 0..NUM_MUTATIONS {
+        let mut bytes = if random.below(4) == 0 { mutate(GLTF, &mut random) } else { GLTF.to_vec() };
+        for _ in 0..=random.below(3) {
+            let at = random.below(bytes.len() + 1);
+            let Some(start) = (at..bytes.len()).find(|&i| bytes[i].is_ascii_digit()) else { continue };
+            let end = (start..bytes.len()).find(|&i| !bytes[i].is_ascii_digit()).unwrap_or(bytes.len());
+            bytes.splice(start..end, NASTY_VALUES[random.below(NASTY_VALUES.len())].bytes());
+        }
+        match Scene::from_bytes_with("a.gltf", &bytes, &LoadOptions::default()) {
+            Ok(scene) => {
+                let assembly = &scene.assembly;
+                assert!(assembly.sphere.radius.is_finite() && !assembly.parts.is_empty());
+                assert!(assembly.parts.iter().all(|part| part.world_from_shape.is_finite()));
+                for shape in &assembly.shapes {
+                    assert!(shape.positions.iter().all(|position| position.is_finite()));
+                    let count = shape.positions.len() as u32;
+                    assert!(shape.triangles.as_flattened().iter().all(|&index| index < count));
+                }
+                num_loaded += 1;
+            }
+            Err(error) => {
+                let message = error.to_string();
+                assert!(message.starts_with("a.gltf") && message.is_ascii(), "{message}");
+                num_refused += 1;
+            }
+        }
+    }
+    println!("{num_loaded} loaded, {num_refused} refused");
+    assert!(num_loaded > 100 && num_refused > 200, "{num_loaded} {num_refused}");
+}

@@ -245,6 +245,11 @@ mod tests {
         assert_eq!(sniff("a", b"7\n\n\n  1  0  0     0  0  0999 V2000"), Format::Sdf);
         assert_eq!(sniff("a.pdb", b"# a comment\n@<TRIPOS>MOLECULE\n"), Format::Mol2);
         assert_eq!(sniff("a.md", b"Model 1 is nicer\n"), Format::Unknown);
+        assert_eq!(sniff("a", b"{ \"asset\": {\"version\": \"2.0\"}}"), Format::Gltf);
+        assert_eq!(sniff("a.json", b"{\"data\": 1}"), Format::Foreign("a JSON file"));
+        assert_eq!(sniff("a.zip", b"PK\x03\x04..3D/3dmodel.model"), Format::ThreeMf);
+        assert_eq!(sniff("a.docx", b"PK\x03\x04..word/document.xml"), Format::Foreign("a zip archive"));
+        assert_eq!(sniff("a.glb", b"glTX"), Format::Gltf);
     }
 
     #[test]

@@ -74,7 +74,7 @@ impl Accessor<'_> {
     }
 
     /// The same numbers, integers as shares: colours can be nothing else, though exporters forget to say so.
-    pub(super) fn as_share(mut self) -> Self {
+    pub(super) fn into_share(mut self) -> Self {
         self.normalized = true;
         self
     }

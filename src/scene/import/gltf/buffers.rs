@@ -46,10 +46,10 @@ fn one<'a>(import: &mut Import<'_>, index: usize, buffer: &Value, binary: Option
     }
     let path = String::from_utf8_lossy(&percent_decoded(uri)).into_owned();
     import.side_file(&path).map(Cow::Owned).map_err(|why| {
-        let way_out = if why.0.contains(';') {
-            ""
-        } else {
-            "; put it beside the file, or export as .glb, which holds everything"
+        let way_out = match why.0.as_str() {
+            why if why.contains(';') => "",
+            why if why.contains("network") => "; export as .glb, which holds everything",
+            _ => "; put it there, or export as .glb, which holds everything",
         };
         format!("the file {} of buffer {index} {}{way_out}", quote(path.as_bytes()), why.0)
     })

@@ -143,7 +143,7 @@ impl Shapes {
             RawNormals::PerVertex(used.iter().map(|i| finite(Vec3::from(normal(i)))).collect())
         });
         let colors = attribute(recipe.color, &[3, 4]).map_or(Vec::new(), |accessor| {
-            let accessor = accessor.as_share();
+            let accessor = accessor.into_share();
             used.iter().map(|&i| accessor.floats::<3>(i as usize).map(srgb)).collect()
         });
         Ok(Some(RawShape { positions: points, triangles, normals, colors }))
