@@ -20,13 +20,13 @@ pub(super) enum State {
     Open,
     /// Open atoms only; a hydrogen nothing.
     Closed,
-    /// As closed, and a [`State::LinkStart`] of the same chain: carbon of a peptide bond.
+    /// As closed, and the nitrogen that begins a peptide of the same chain: carbon.
     PeptideEnd,
-    /// As closed, and the end of a peptide: nitrogen.
+    /// As closed, and the carbon that ends a peptide of the same chain: nitrogen.
     PeptideStart,
-    /// As closed, and phosphorus of the same chain: oxygen 3'.
+    /// As closed, and the phosphorus of a nucleotide of the same chain: oxygen 3'.
     NucleotideEnd,
-    /// As closed, and oxygen 3': phosphorus.
+    /// As closed, and the oxygen 3' of a nucleotide of the same chain: phosphorus.
     NucleotideStart,
     /// As closed, and another sulphur: cystine.
     Sulfur,

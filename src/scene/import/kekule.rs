@@ -182,7 +182,8 @@ mod tests {
     fn benzene_and_naphthalene_alternate() {
         let ring = [(0, 1), (1, 2), (2, 3), (3, 4), (4, 5), (5, 0)];
         assert_eq!(doubles("C C C C C C", &ring, &[]), [1; 6]);
-        // Bonds in an order that leads a greedy choice astray.
+        // A greedy choice would pair the two in the middle first.
+        assert_eq!(doubles("C C C C", &[(0, 2), (0, 1), (2, 3)], &[]), [1; 4]);
         let naphthalene = [(1, 2), (4, 9), (3, 4), (0, 1), (2, 3), (9, 0), (4, 5), (5, 6), (6, 7), (7, 8), (8, 9)];
         assert_eq!(doubles("C C C C C C C C C C", &naphthalene, &[]), [1; 10]);
     }

@@ -14,7 +14,7 @@ use super::table::{Table, TableAtom, TableBond, TableOrder, count_error, no_atom
 use crate::scene::builder::MoleculeBuilder;
 use crate::scene::element::Element;
 use crate::scene::error::SceneError;
-use crate::scene::guess::from_xyz_symbol;
+use crate::scene::guess::{from_xyz_symbol, is_polymer_residue};
 use crate::scene::molecule::Molecule;
 use crate::scene::name::Name;
 use crate::scene::report::NoteKind;
@@ -55,9 +55,10 @@ pub(super) fn read(import: &mut Import<'_>, bytes: &[u8]) -> Result<Molecule, Sc
     molecule.ok_or_else(|| no_atoms(import, "its counts announce none"))
 }
 
-/// The residue that a record's name gives.
+/// The residue that a record's name gives; a lone amino acid or nucleotide is none of a chain, nor are its atoms called so.
 fn residue_name(name: &[u8]) -> Name {
-    Name::new(words(name).next().unwrap_or(NAMELESS))
+    let name = Name::new(words(name).next().unwrap_or(NAMELESS));
+    if is_polymer_residue(name.as_str()) { Name::new(NAMELESS) } else { name }
 }
 
 /// An atom of a table, whose charge may still be told.
@@ -295,6 +296,11 @@ mod tests {
         assert_eq!((molecule.residues[0].name.as_str(), molecule.atoms[3].name.as_str()), ("acetat", "O4"));
         assert_eq!(molecule.atoms.iter().map(|atom| atom.charge).collect::<Vec<_>>(), [0.0, 0.0, 0.0, -1.0]);
         assert!(scene.files[0].report.is_empty());
+        let named = |name: &str| {
+            let text = acetate("  4  3", "M  END\n").replacen("acetate", name, 1);
+            load(&text, ModelChoice::First).expect("a scene").molecule.residues[0].name
+        };
+        assert_eq!(["", "GLY", "CHEBI:1 x"].map(|name| named(name).as_str().to_owned()), ["LIG", "LIG", "CHEBI:"]);
     }
 
     #[test]
@@ -332,7 +338,7 @@ mod tests {
         );
         assert_eq!(
             message(&acetate("  4  1", end)),
-            "t.sdf:4: announces 1 bonds, but 3 follow; write 3, or delete the lines that are too many"
+            "t.sdf:4: announces 1 bond, but 3 follow; write 3, or delete the lines that are too many"
         );
         assert!(
             message(&acetate("  2  3", end)).starts_with("t.sdf:7: found \"2.1000    1.1000    0.00...\" where a bond")

@@ -128,6 +128,7 @@ pub(super) fn count_error(import: &Import<'_>, line: u32, announced: i64, what: 
     } else {
         format!("write {found}, or delete the lines that are too many")
     };
+    let what = if announced == 1 { what.trim_end_matches('s') } else { what };
     import.malformed(line, format!("announces {announced} {what}, but {found} {follow}; {way_out}"))
 }
 
