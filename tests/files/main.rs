@@ -2,8 +2,8 @@
 
 mod scene_cif;
 mod scene_data;
-mod scene_mol;
 mod scene_gltf;
+mod scene_mol;
 mod scene_mutations;
 mod scene_shipped;
 mod scene_tri;
