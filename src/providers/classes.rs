@@ -112,8 +112,8 @@ impl Classes {
         let part = |index: u32| &assembly.parts[index as usize];
         let text = |name: &u32| assembly.names[*name as usize].clone();
         let columns = asked.iter().map(|attribute| match attribute {
-            Attribute::Part => column(attribute, &firsts, |i| part(i).name, text),
-            Attribute::Node => column(attribute, &firsts, |i| part(i).path, text),
+            Attribute::Part => column_of_indices(attribute, &firsts, assembly.names.len(), |i| part(i).name, text),
+            Attribute::Node => column_of_indices(attribute, &firsts, assembly.names.len(), |i| part(i).path, text),
             Attribute::Material => {
                 let name = |material: &Option<u32>| {
                     material.map_or(String::new(), |index| assembly.materials[index as usize].name.clone())
@@ -198,6 +198,29 @@ fn column<T: Hash + Eq>(
 ) -> Column {
     let (of_class, differing) = number(firsts.iter().map(|index| value(*index)));
     let texts = differing.into_iter().map(|class| text(&value(firsts[class as usize]))).collect();
+    Column { attribute, texts, of_class }
+}
+
+/// The same where values are indices into a list of so many: nothing is hashed.
+fn column_of_indices(
+    attribute: Attribute,
+    firsts: &[u32],
+    list_len: usize,
+    value: impl Fn(u32) -> u32,
+    text: impl Fn(&u32) -> String,
+) -> Column {
+    let mut number_of = vec![u32::MAX; list_len];
+    let mut texts = Vec::new();
+    let of_class = firsts.iter().map(|index| {
+        let value = value(*index);
+        let number = &mut number_of[value as usize];
+        if *number == u32::MAX {
+            *number = texts.len() as u32;
+            texts.push(text(&value));
+        }
+        *number
+    });
+    let of_class = of_class.collect();
     Column { attribute, texts, of_class }
 }
 

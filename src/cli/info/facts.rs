@@ -204,7 +204,7 @@ impl Facts {
 /// Parts that are alike, those of the most triangles first.
 fn parts(scene: &Scene, file_name: &dyn Fn(u32) -> String) -> Vec<PartFacts> {
     let assembly = &scene.assembly;
-    let mut placed: HashMap<(u32, u32, Option<u32>, u32), (usize, u64)> = HashMap::new();
+    let mut placed: HashMap<_, (usize, u64)> = HashMap::new();
     for (first, part) in assembly.parts.iter().enumerate() {
         placed.entry((part.file, part.name, part.material, part.shape)).or_insert((first, 0)).1 += 1;
     }

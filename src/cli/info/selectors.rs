@@ -83,29 +83,34 @@ fn selector(kind: &str, attribute: &str, value: &str) -> String {
     }
 }
 
+/// Names that differ in digits alone.
+struct Alike<'a> {
+    texts: Vec<&'a str>,
+    /// The digits between the texts; none where they differ.
+    runs: Vec<Option<&'a str>>,
+    count: u64,
+}
+
 /// Names, those that differ in digits alone as one glob, with what there is of each, in the order of the first.
 fn alike<'a>(names: impl Iterator<Item = (&'a str, u64)>) -> Vec<(String, u64)> {
     let mut number_of: HashMap<Vec<&str>, usize> = HashMap::new();
-    // The runs of digits of each group, and none for a run that differs.
-    let mut groups: Vec<(Vec<&str>, Vec<Option<&str>>, u64)> = Vec::new();
+    let mut groups: Vec<Alike<'_>> = Vec::new();
     for (name, count) in names.filter(|(name, _)| !name.is_empty()) {
         let (texts, runs) = runs_of(name);
         let number = *number_of.entry(texts.clone()).or_insert(groups.len());
         match groups.get_mut(number) {
-            Some((_, known, total)) => {
-                *total += count;
-                known
-                    .iter_mut()
-                    .zip(runs)
-                    .filter(|(known, run)| **known != Some(*run))
-                    .for_each(|(known, _)| *known = None);
+            Some(group) => {
+                group.count += count;
+                for (known, run) in group.runs.iter_mut().zip(runs) {
+                    *known = known.filter(|known| *known == run);
+                }
             }
-            None => groups.push((texts, runs.into_iter().map(Some).collect(), count)),
+            None => groups.push(Alike { texts, runs: runs.into_iter().map(Some).collect(), count }),
         }
     }
-    let glob = |(texts, runs, count): (Vec<&str>, Vec<Option<&str>>, u64)| {
-        let runs = runs.into_iter().map(|run| run.unwrap_or("*")).chain([""]);
-        (texts.into_iter().zip(runs).flat_map(|(text, run)| [text, run]).collect::<String>(), count)
+    let glob = |group: Alike<'_>| {
+        let runs = group.runs.into_iter().map(|run| run.unwrap_or("*")).chain([""]);
+        (group.texts.into_iter().zip(runs).flat_map(|(text, run)| [text, run]).collect(), group.count)
     };
     groups.into_iter().map(glob).collect()
 }
