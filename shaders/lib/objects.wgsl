@@ -6,7 +6,8 @@ struct Atom {
     // Linear RGB as half floats: (r, g), (b, unused).
     color: vec2<u32>,
     material: u32,
-    _pad0: u32,
+    // Chain (7 bits) and residue (9 bits), as far as neighbours need them to differ.
+    group: u32,
 }
 
 struct Connector {
@@ -14,6 +15,7 @@ struct Connector {
     radius: f32,
     b_world: vec3<f32>,
     material: u32,
+    // Colours of the halves, as an atom's; in their unused 16 bits the groups of the atoms there.
     color_a: vec2<u32>,
     color_b: vec2<u32>,
 }

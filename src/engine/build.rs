@@ -8,7 +8,8 @@ use glam::Vec3;
 use super::palette::AtomColors;
 use crate::config::{AtomRadius, BaseColor, Geometry, Style, Value};
 use crate::frame::Materials;
-use crate::frame::objects::{self, Connector, DrawList, Material, pack_linear};
+use crate::effects::outline::group_word;
+use crate::frame::objects::{self, Connector, DrawList, Material, pack_linear, pack_linear_and_group};
 use crate::providers::{Assignment, Lengths};
 use crate::scene::{Atom, Bond, Molecule};
 use crate::shading::{self, MaterialContext, SHADERS};
@@ -69,6 +70,8 @@ pub fn objects(molecule: &Molecule, style: &Style, assignment: &Assignment) -> O
     let by_residue = style.shaders.iter().any(|shader| own_scheme(shader) == BaseColor::Residue);
     let colors = AtomColors::new(molecule, by_residue);
 
+    let group = |atom: &Atom| group_word(molecule.residue(atom).chain, atom.residue);
+
     let mut list = DrawList::default();
     for (atom, used) in molecule.atoms.iter().zip(&uses) {
         let (Some(used), radius) = (*used, radius(atom)) else { continue };
@@ -78,7 +81,7 @@ pub fn objects(molecule: &Molecule, style: &Style, assignment: &Assignment) -> O
                 radius,
                 color: pack_linear(colors.of(molecule, atom, own_scheme(&style.shaders[used]))),
                 material: materials.of(used),
-                _pad0: 0,
+                group: group(atom),
             });
         }
     }
@@ -106,8 +109,8 @@ pub fn objects(molecule: &Molecule, style: &Style, assignment: &Assignment) -> O
                 radius,
                 b_world: (b.position + offset).to_array(),
                 material,
-                color_a: pack_linear(colors.of(molecule, a, scheme)),
-                color_b: pack_linear(colors.of(molecule, b, scheme)),
+                color_a: pack_linear_and_group(colors.of(molecule, a, scheme), group(a)),
+                color_b: pack_linear_and_group(colors.of(molecule, b, scheme), group(b)),
             });
         }
     }

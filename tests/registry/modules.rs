@@ -6,8 +6,9 @@ use std::sync::OnceLock;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{AddressSpace, Handle, Type, TypeInner};
+use restyle::effects::EFFECTS;
 use restyle::frame::{
-    ShadeKey, ShaderNeeds, VisibilityKey, aov_module, resolve_module, shade_module, visibility_module,
+    EffectKey, Finish, ShadeKey, ShaderNeeds, VisibilityKey, aov_module, effect_module, resolve_module, shade_module, visibility_module,
 };
 use restyle::gpu::Module;
 use restyle::shading::SHADERS;
@@ -58,6 +59,9 @@ pub fn survey() -> &'static Survey {
             survey.read(&format!("aov, orthographic {orthographic}"), &aov_module(orthographic));
         }
         survey.read("resolve", &resolve_module());
+        for key in effect_keys() {
+            survey.read(&format!("effect, {key:?}"), &effect_module(&key));
+        }
         for key in shade_keys() {
             survey.read(&format!("shade, {key:?}"), &shade_module(&key));
         }
@@ -135,7 +139,7 @@ fn collect(parsed: &naga::Module, ty: Handle<Type>, into: &mut BTreeSet<Handle<T
 }
 
 /// How many yes-or-no questions a [`ShadeKey`] answers, beside its list of shaders.
-const NUM_SWITCHES: u32 = 13;
+const NUM_SWITCHES: u32 = 14;
 
 /// Answers, one a bit, of which at most one differs from the rest.
 fn covering_switches() -> impl Iterator<Item = u32> {
@@ -158,6 +162,20 @@ fn shade_keys() -> Vec<ShadeKey> {
     keys
 }
 
+/// Keys of every post effect: each set of its features with each camera and each end.
+fn effect_keys() -> Vec<EffectKey> {
+    let mut keys = Vec::new();
+    for (effect, registered) in EFFECTS.iter().enumerate() {
+        for features in 0..1 << registered.features().len() {
+            for orthographic in [false, true] {
+                let ends = [Finish::Next, Finish::Add, Finish::Encode];
+                keys.extend(ends.map(|finish| EffectKey { effect, features, orthographic, finish }));
+            }
+        }
+    }
+    keys
+}
+
 fn shade_key(shaders: u32, switches: u32, features: u32) -> ShadeKey {
     let on = |switch: u32| switches >> switch & 1 == 1;
     let used = (0..SHADERS.len()).filter(|index| shaders >> index & 1 == 1);
@@ -175,6 +193,7 @@ fn shade_key(shaders: u32, switches: u32, features: u32) -> ShadeKey {
         shadows: on(7),
         encode: on(8),
         soft_taps: if on(12) { 16 } else { 0 },
+        geometry: on(13),
         orthographic: on(11),
     }
 }

@@ -1,0 +1,343 @@
+// Lines where depth jumps (silhouettes), where groups meet (boundaries) and where surfaces fold (creases).
+//
+// Every place between two neighbouring pixels is looked at once (`find_seeds`). What is an edge there leaves a seed: the
+// kinds of line, where the edge crosses between both centres, its direction, and how deep something must lie to be covered.
+// Seeds are found again by their bits, a word for 32 pixels (`gather_words`), a word for 32 rows of those (`gather_rows`).
+// `draw_lines` looks through all seeds within reach: a line is the set of points within its width of an edge, its coverage
+// that of the sample's own square. So widths are true between pixels, and one sample is smooth already.
+// A line lies on what is behind; where nothing is, half on either side.
+// Surfaces go on beyond a pixel as the sphere that touches them there: exact for atoms, to second order for connectors, and
+// the plane for what is flat. Twin: tests/twins/outline.rs, function by function.
+
+struct OutlineParams {
+    // Linear RGB and opacity.
+    crease_color: vec4<f32>,
+    boundary_color: vec4<f32>,
+    silhouette_color: vec4<f32>,
+    // Of crease, boundary and silhouette: pixels plus scene units.
+    width_px: vec3<f32>,
+    crease_cosine: f32,
+    width_world: vec3<f32>,
+    // Least step of depth of a silhouette in scene units.
+    depth_step: f32,
+    // Width of the widest line.
+    reach_px: f32,
+    // Bits of a group word that differ between groups; or every object is a group.
+    group_mask: u32,
+    by_object: u32,
+    _pad0: u32,
+}
+
+// A seed is two words: what it is, and the depth beyond which it covers. From bit 0: kinds (3), side (2), place (8),
+// direction (6 + 6), radius (6), whether nothing lies behind (1).
+const CREASE: u32 = 1u;
+const BOUNDARY: u32 = 2u;
+const SILHOUETTE: u32 = 4u;
+// Which of both pixels sees what is in front.
+const SIDE_BOTH: u32 = 0u;
+const SIDE_FIRST: u32 = 1u;
+const SIDE_SECOND: u32 = 2u;
+
+// Farther than anything.
+const NOWHERE: f32 = 1e30;
+// Least step of depth in pixels: planes that are told apart by rounding alone make no edge.
+const LEAST_STEP_PX: f32 = 1.0;
+// Half of the longest way between two crossings of an edge with the lines through pixel centres.
+const HALF_SEGMENT_PX: f32 = 0.71;
+// A seed holds radii below this, in eighths of a pixel.
+const MOST_RADIUS: f32 = 63.0;
+
+// A hull outline is drawn already, and no surface.
+fn is_line(g: Geometry) -> bool {
+    return g.id != 0u && g.depth <= 0.0;
+}
+
+// A surface beyond its own pixel, on a neighbour's ray.
+struct Continued {
+    // Depth there, or of the place where it turns away.
+    depth: f32,
+    // Whether it turns away before.
+    ends: bool,
+    // Share of the way at which it turns away.
+    place: f32,
+}
+
+// The sphere that touches the surface at its pixel: bend |x|^2 + 2 n.x = 0, x from there. On the neighbour's ray x = e + tau d.
+fn continued(g: Geometry, own: Ray, other: Ray) -> Continued {
+    let e = other.origin + g.depth * other.direction - own.origin - g.depth * own.direction;
+    let d = other.direction;
+    let bend = g.bend_px / pixel_world(view, g.depth);
+    let d_squared = dot(d, d);
+    let a = bend * d_squared;
+    let b = bend * dot(e, d) + dot(g.normal_view, d);
+    let c = bend * dot(e, e) + 2.0 * dot(g.normal_view, e);
+    let inside = b * b - a * c;
+    let facing = dot(g.normal_view, own.direction);
+    let before = facing * facing;
+    // Along the way `inside` is a parabola of curvature -2 k from `before` to `inside`, 0 on the outline.
+    let k = bend * bend * dot(e, e) * d_squared;
+    let slope = inside - before + k;
+    let place = 2.0 * before / max(sqrt(slope * slope + 4.0 * k * before) - slope, 1e-12);
+    let ends = inside < 0.0 || b >= 0.0;
+    let through = c / max(sqrt(max(inside, 0.0)) - b, 1e-12);
+    let turn = max(-b, 0.0) / max(a, 1e-12);
+    return Continued(g.depth + select(through, select(turn, 0.0, a <= 0.0), ends), ends, clamp(place, 0.0, 1.0));
+}
+
+// How depth changes for a pixel to the right and down.
+fn depth_slope(g: Geometry, ray: Ray) -> vec2<f32> {
+    let pixel = pixel_world(view, g.depth);
+    return pixel * vec2<f32>(-g.normal_view.x, g.normal_view.y) / min(dot(g.normal_view, ray.direction), -1e-3);
+}
+
+// The normal of the touching sphere where the neighbour's ray meets it.
+fn continued_normal(g: Geometry, own: Ray, other: Ray, depth: f32) -> vec3<f32> {
+    let bend = g.bend_px / pixel_world(view, g.depth);
+    let x = other.origin + depth * other.direction - own.origin - g.depth * own.direction;
+    return normalize(g.normal_view + bend * x);
+}
+
+fn group_differs(a: Geometry, b: Geometry) -> bool {
+    return outline_params.by_object != 0u || ((a.group ^ b.group) & outline_params.group_mask) != 0u;
+}
+
+// The seed between a pixel and its neighbour a `step` to the right or down.
+fn seed_between(a_texel: vec4<u32>, b_texel: vec4<u32>, position: vec2<f32>, step: vec2<f32>) -> vec2<u32> {
+    let a = unpack_geometry(a_texel);
+    let b = unpack_geometry(b_texel);
+    let ray_a = ray_at(view, position);
+    let ray_b = ray_at(view, position + step);
+    let on_b = continued(a, ray_a, ray_b);
+    let on_a = continued(b, ray_b, ray_a);
+    // How far each surface, gone on, lies behind the one that is seen.
+    let a_behind = on_b.depth - b.depth;
+    let b_behind = on_a.depth - a.depth;
+    // Signs that differ: one surface ends in front of the other. Equal signs: they meet, in a valley or on a ridge.
+    var gap = 0.0;
+    var a_nearer = a.depth < b.depth;
+    var place = abs(b_behind) / max(abs(a_behind) + abs(b_behind), 1e-12);
+    var near_depth = min(a.depth, b.depth);
+    var turned = false;
+    if a.id == 0u || b.id == 0u {
+        gap = NOWHERE;
+        a_nearer = b.id == 0u;
+        turned = select(on_a.ends, on_b.ends, a_nearer);
+        near_depth = select(on_a.depth, on_b.depth, a_nearer);
+    } else if a.id != b.id || a.bend_px == 0.0 {
+        if on_b.ends && on_a.ends {
+            gap = abs(on_b.depth - on_a.depth);
+            a_nearer = on_b.depth < on_a.depth;
+            turned = true;
+        } else if on_b.ends {
+            gap = max(-a_behind, 0.0);
+            a_nearer = true;
+            turned = gap > 0.0;
+        } else if on_a.ends {
+            gap = max(-b_behind, 0.0);
+            a_nearer = false;
+            turned = gap > 0.0;
+        } else if (a_behind > 0.0) != (b_behind > 0.0) {
+            gap = min(abs(a_behind), abs(b_behind));
+        }
+        if turned { near_depth = select(on_a.depth, on_b.depth, a_nearer); }
+    }
+    let pixel = pixel_world(view, near_depth);
+    let step_px = LEAST_STEP_PX * pixel;
+    let step_world = max(outline_params.depth_step, step_px);
+    let steps = gap > step_px;
+
+    var kinds = 0u;
+    if OUTLINE_SILHOUETTES && gap > step_world { kinds |= SILHOUETTE; }
+    if OUTLINE_BOUNDARIES && gap < NOWHERE && a.id != b.id && group_differs(a, b) { kinds |= BOUNDARY; }
+    if OUTLINE_CREASES && !steps {
+        let normal_a = continued_normal(a, ray_a, ray_b, on_b.depth);
+        let normal_b = continued_normal(b, ray_b, ray_a, on_a.depth);
+        let angle = max(dot(normal_a, b.normal_view), dot(normal_b, a.normal_view));
+        if angle < outline_params.crease_cosine { kinds |= CREASE; }
+    }
+    if is_line(a) || is_line(b) { kinds = 0u; }
+    if kinds == 0u { return vec2<u32>(0u); }
+
+    // The edge's normal in the picture, to what is behind.
+    var across = select(-step, step, a_nearer);
+    if turned {
+        // Where a surface turns away, it is its own normal.
+        place = select(1.0 - on_a.place, on_b.place, a_nearer);
+        let normal = select(b.normal_view, a.normal_view, a_nearer);
+        across = vec2<f32>(normal.x, -normal.y);
+    } else if steps {
+        place = 0.5;
+    } else {
+        // Where surfaces meet, their depths are equal along the edge.
+        across = depth_slope(a, ray_a) - depth_slope(b, ray_b);
+    }
+    let length_squared = dot(across, across);
+    across = select(step, across * inverseSqrt(length_squared), length_squared > 1e-20);
+
+    let side = select(SIDE_BOTH, select(SIDE_SECOND, SIDE_FIRST, a_nearer), steps);
+    // Halfway between what is in front and what lies a step behind it: neighbours in front stay clear.
+    let depth = select(near_depth, near_depth + 0.5 * min(gap, step_world), steps);
+    let bend_px = select(select(b.bend_px, a.bend_px, a_nearer), min(a.bend_px, b.bend_px), !steps);
+    let radius = min(8.0 / max(bend_px, 1e-3), MOST_RADIUS);
+    let direction = vec2<u32>(round(31.5 + 31.0 * across));
+    let what = kinds | (side << 3u) | (u32(round(255.0 * place)) << 5u) | (direction.x << 13u) | (direction.y << 19u)
+        | (u32(radius) << 25u) | (select(0u, 1u, gap >= NOWHERE) << 31u);
+    return vec2<u32>(what, bitcast<u32>(depth));
+}
+
+@fragment
+fn find_seeds(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
+    let at = vec2<u32>(position.xy);
+    let last = vec2<u32>(view.size_px) - 1u;
+    let own = textureLoad(geometry, at, 0);
+    let right = textureLoad(geometry, min(at + vec2<u32>(1u, 0u), last), 0);
+    let below = textureLoad(geometry, min(at + vec2<u32>(0u, 1u), last), 0);
+    // Most neighbours see the same object: a loop skips them, where a condition would not.
+    var left = 0u;
+    if own.w != right.w || (OUTLINE_CREASES && any(own != right)) { left |= 1u; }
+    if own.w != below.w || (OUTLINE_CREASES && any(own != below)) { left |= 2u; }
+    var seeds = vec4<u32>(0u);
+    while left != 0u {
+        let is_below = (left & 1u) == 0u;
+        left &= left - 1u;
+        let step = select(vec2<f32>(1.0, 0.0), vec2<f32>(0.0, 1.0), is_below);
+        let seed = seed_between(own, select(right, below, is_below), position.xy, step);
+        seeds = select(vec4<u32>(seed, seeds.zw), vec4<u32>(seeds.xy, seed), is_below);
+    }
+    return seeds;
+}
+
+@fragment
+fn gather_words(@builtin(position) position: vec4<f32>) -> @location(0) u32 {
+    let at = vec2<u32>(position.xy);
+    let first = 32u * at.x;
+    let end = min(first + 32u, u32(view.size_px.x));
+    var word = 0u;
+    for (var x = first; x < end; x++) {
+        let seeds = textureLoad(outline_seeds, vec2<u32>(x, at.y), 0);
+        word |= select(0u, 1u << (x - first), (seeds.x | seeds.z) != 0u);
+    }
+    return word;
+}
+
+@fragment
+fn gather_rows(@builtin(position) position: vec4<f32>) -> @location(0) u32 {
+    let at = vec2<u32>(position.xy);
+    let first = 32u * at.y;
+    let end = min(first + 32u, u32(view.size_px.y));
+    var word = 0u;
+    for (var y = first; y < end; y++) {
+        word |= select(0u, 1u << (y - first), textureLoad(outline_words, vec2<u32>(at.x, y), 0).x != 0u);
+    }
+    return word;
+}
+
+// Bits from `low` to `high`, both included and cut to 0..31.
+fn bits_between(low: i32, high: i32) -> u32 {
+    if low > 31 || high < 0 { return 0u; }
+    return (0xffffffffu << u32(max(low, 0))) & (0xffffffffu >> u32(31 - min(high, 31)));
+}
+
+// What the lines near a pixel do to it.
+struct Cover {
+    // Shares that crease, boundary and silhouette cover.
+    lines: vec3<f32>,
+    // Share of the pixel that its neighbour in front does not cover, and that neighbour.
+    behind: f32,
+    front: vec2<i32>,
+}
+
+// Length of what a line from `low` to `high` and the square of a sample around `middle` have in common.
+fn overlap(low: vec3<f32>, high: vec3<f32>, middle: f32, footprint: f32) -> vec3<f32> {
+    let half = 0.5 * footprint;
+    return max(min(high, vec3<f32>(middle + half)) - max(low, vec3<f32>(middle - half)), vec3<f32>(0.0));
+}
+
+// Adds what one seed covers of the pixel `own` at `depth`.
+fn add_seed(cover: Cover, seed: vec2<u32>, at: vec2<i32>, step: vec2<i32>, own: vec2<i32>, depth: f32) -> Cover {
+    let what = seed.x;
+    let side = (what >> 3u) & 3u;
+    let place = f32((what >> 5u) & 255u) / 255.0;
+    let across = normalize(vec2<f32>(f32((what >> 13u) & 63u), f32((what >> 19u) & 63u)) - 31.5);
+    let from_edge = vec2<f32>(own - at) - place * vec2<f32>(step);
+    let signed_distance = dot(from_edge, across);
+    let along = max(abs(dot(from_edge, vec2<f32>(-across.y, across.x))) - HALF_SEGMENT_PX, 0.0);
+    let distance = sqrt(signed_distance * signed_distance + along * along);
+    let covers_beyond = bitcast<f32>(seed.y);
+    let pixel = pixel_world(view, covers_beyond);
+    let width = min(outline_params.width_px + outline_params.width_world / pixel, vec3<f32>(outline_params.reach_px));
+    let footprint = view.footprint_px;
+
+    var shares = vec3<f32>(0.0);
+    let first = all(own == at);
+    let second = all(own == at + step);
+    var behind = 1.0;
+    if side == SIDE_BOTH {
+        // Both surfaces come forward from where they meet, as steeply as 2.
+        let in_reach = depth > covers_beyond - (2.0 * distance + 2.0) * pixel;
+        shares = overlap(-0.5 * width, 0.5 * width, distance, footprint) / footprint;
+        shares = select(vec3<f32>(0.0), shares, in_reach);
+    } else if (first && side == SIDE_FIRST) || (second && side == SIDE_SECOND) {
+        // In front: only what the pixel has of beyond the edge.
+        shares = overlap(vec3<f32>(0.0), width, min(signed_distance, 0.0), footprint) / footprint;
+    } else if depth > covers_beyond {
+        let visible = min(distance + 0.5 * footprint, footprint);
+        shares = overlap(vec3<f32>(0.0), width, distance, footprint) / visible;
+        behind = select(1.0, visible / footprint, first || second);
+    }
+    // Lines fade where they are as wide as what they outline: a line of 2 px around radii below 4 px, the outermost below half
+    // a pixel.
+    let radius = select(f32((what >> 25u) & 63u) / 8.0, 64.0, ((what >> 25u) & 63u) == 63u);
+    let inner = clamp(vec3<f32>(radius) / (2.0 * min(max(width, vec3<f32>(0.01)), vec3<f32>(2.0))), vec3<f32>(0.0), vec3<f32>(1.0));
+    let fade = select(inner, vec3<f32>(min(2.0 * radius, 1.0)), (what >> 31u) != 0u);
+    let drawn = (vec3<u32>(what) & vec3<u32>(CREASE, BOUNDARY, SILHOUETTE)) != vec3<u32>(0u);
+    shares = select(vec3<f32>(0.0), fade * shares, drawn);
+    behind = select(1.0, behind, any(shares > vec3<f32>(0.0)));
+    let front = select(at + step, at, side == SIDE_FIRST);
+    return Cover(
+        max(cover.lines, shares),
+        min(cover.behind, behind),
+        select(cover.front, front, behind < cover.behind),
+    );
+}
+
+fn over(below: vec4<f32>, color: vec4<f32>, share: f32) -> vec4<f32> {
+    return mix(below, vec4<f32>(color.rgb, 1.0), share * color.a);
+}
+
+@fragment
+fn draw_lines(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let own = vec2<i32>(position.xy);
+    let seen = textureLoad(geometry, own, 0);
+    let depth = select(bitcast<f32>(seen.x), NOWHERE, seen.w == 0u);
+    // A pixel of the seed and one of the footprint beside the width itself.
+    let reach = i32(ceil(outline_params.reach_px + 1.0 + 0.5 * view.footprint_px));
+    let last = vec2<i32>(view.size_px) - 1;
+    let low = max(own - reach, vec2<i32>(0)) >> vec2<u32>(5u);
+    let high = min(own + reach, last) >> vec2<u32>(5u);
+    var cover = Cover(vec3<f32>(0.0), 1.0, own);
+    for (var tile_y = low.y; tile_y <= high.y; tile_y++) {
+        for (var tile_x = low.x; tile_x <= high.x; tile_x++) {
+            var rows = textureLoad(outline_rows, vec2<i32>(tile_x, tile_y), 0).x;
+            rows &= bits_between(own.y - reach - 32 * tile_y, own.y + reach - 32 * tile_y);
+            while rows != 0u {
+                let y = 32 * tile_y + i32(firstTrailingBit(rows));
+                rows &= rows - 1u;
+                var word = textureLoad(outline_words, vec2<i32>(tile_x, y), 0).x;
+                word &= bits_between(own.x - reach - 32 * tile_x, own.x + reach - 32 * tile_x);
+                while word != 0u {
+                    let at = vec2<i32>(32 * tile_x + i32(firstTrailingBit(word)), y);
+                    word &= word - 1u;
+                    let seeds = textureLoad(outline_seeds, at, 0);
+                    cover = add_seed(cover, seeds.xy, at, vec2<i32>(1, 0), own, depth);
+                    cover = add_seed(cover, seeds.zw, at, vec2<i32>(0, 1), own, depth);
+                }
+            }
+        }
+    }
+    var result = textureLoad(color, own, 0);
+    result = over(result, outline_params.crease_color, cover.lines.x);
+    result = over(result, outline_params.boundary_color, cover.lines.y);
+    result = over(result, outline_params.silhouette_color, cover.lines.z);
+    return finished(mix(textureLoad(color, cover.front, 0), result, cover.behind));
+}
