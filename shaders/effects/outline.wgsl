@@ -2,8 +2,8 @@
 //
 // Every place between two neighbouring pixels is looked at once (`find_seeds`). What is an edge there leaves a seed: the
 // kinds of line, where the edge crosses between both centres, its direction, and how deep something must lie to be covered.
-// Seeds are found again by their bits, a word for 32 pixels (`gather_words`), a word for 32 rows of those (`gather_rows`).
-// `draw_lines` looks through all seeds within reach: a line is the set of points within its width of an edge, its coverage
+// Seeds are found again by their bits, a word for 32 pixels (`gather_words`), and the pixels within reach of one by the same
+// bits spread out (`spread_beside`, `spread_around`). There `draw_lines` looks through all seeds within reach: a line is the set of points within its width of an edge, its coverage
 // that of the sample's own square. So widths are true between pixels, and one sample is smooth already.
 // A line lies on what is behind; where nothing is, half on either side.
 // Surfaces go on beyond a pixel as the sphere that touches them there: exact for atoms, to second order for connectors, and
@@ -189,24 +189,24 @@ fn seed_between(a_texel: vec4<u32>, b_texel: vec4<u32>, position: vec2<f32>, ste
 fn find_seeds(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
     let at = vec2<u32>(position.xy);
     let last = vec2<u32>(view.size_px) - 1u;
-    let own = textureLoad(geometry, at, 0);
-    let right = textureLoad(geometry, min(at + vec2<u32>(1u, 0u), last), 0);
-    let below = textureLoad(geometry, min(at + vec2<u32>(0u, 1u), last), 0);
+    let own = textureLoad(ids, at, 0).x;
     // Most neighbours see the same object: a loop skips them, where a condition would not.
     var left = 0u;
-    if own.w != right.w || (OUTLINE_CREASES && any(own != right)) { left |= 1u; }
-    if own.w != below.w || (OUTLINE_CREASES && any(own != below)) { left |= 2u; }
+    if own != textureLoad(ids, min(at + vec2<u32>(1u, 0u), last), 0).x || (OUTLINE_CREASES && at.x < last.x) { left |= 1u; }
+    if own != textureLoad(ids, min(at + vec2<u32>(0u, 1u), last), 0).x || (OUTLINE_CREASES && at.y < last.y) { left |= 2u; }
     var seeds = vec4<u32>(0u);
     while left != 0u {
-        let is_below = (left & 1u) == 0u;
+        let step = select(vec2<u32>(1u, 0u), vec2<u32>(0u, 1u), (left & 1u) == 0u);
         left &= left - 1u;
-        let step = select(vec2<f32>(1.0, 0.0), vec2<f32>(0.0, 1.0), is_below);
-        let seed = seed_between(own, select(right, below, is_below), position.xy, step);
-        seeds = select(vec4<u32>(seed, seeds.zw), vec4<u32>(seeds.xy, seed), is_below);
+        let here = textureLoad(geometry, at, 0);
+        let there = textureLoad(geometry, at + step, 0);
+        let seed = seed_between(here, there, position.xy, vec2<f32>(step));
+        seeds = select(vec4<u32>(seed, seeds.zw), vec4<u32>(seeds.xy, seed), step.y == 1u);
     }
     return seeds;
 }
 
+// The bits of 32 pixels that have seeds.
 @fragment
 fn gather_words(@builtin(position) position: vec4<f32>) -> @location(0) u32 {
     let at = vec2<u32>(position.xy);
@@ -220,14 +220,39 @@ fn gather_words(@builtin(position) position: vec4<f32>) -> @location(0) u32 {
     return word;
 }
 
+// How far from a pixel seeds matter to it: a pixel of the seed and the footprint beside the width itself.
+fn reach_px() -> i32 {
+    return i32(ceil(outline_params.reach_px + 1.0 + 0.5 * view.footprint_px));
+}
+
+// The bits of pixels that have a seed within reach in their row.
 @fragment
-fn gather_rows(@builtin(position) position: vec4<f32>) -> @location(0) u32 {
-    let at = vec2<u32>(position.xy);
-    let first = 32u * at.y;
-    let end = min(first + 32u, u32(view.size_px.y));
+fn spread_beside(@builtin(position) position: vec4<f32>) -> @location(0) u32 {
+    let at = vec2<i32>(position.xy);
+    let reach = reach_px();
+    var word = textureLoad(outline_words, at, 0).x;
+    for (var step = 0; step < min(reach, 31); step++) { word |= (word << 1u) | (word >> 1u); }
+    let words = (i32(view.size_px.x) + 31) >> 5u;
+    for (var x = max(at.x - ((reach + 31) >> 5u), 0); x < at.x; x++) {
+        let left = textureLoad(outline_words, vec2<i32>(x, at.y), 0).x;
+        // From the last seed there on, as far as the reach goes.
+        if left != 0u { word |= bits_between(0, reach + i32(firstLeadingBit(left)) - 32 * (at.x - x)); }
+    }
+    for (var x = at.x + 1; x <= min(at.x + ((reach + 31) >> 5u), words - 1); x++) {
+        let right = textureLoad(outline_words, vec2<i32>(x, at.y), 0).x;
+        if right != 0u { word |= bits_between(i32(firstTrailingBit(right)) + 32 * (x - at.x) - reach, 31); }
+    }
+    return word;
+}
+
+// The bits of pixels that have a seed within reach at all.
+@fragment
+fn spread_around(@builtin(position) position: vec4<f32>) -> @location(0) u32 {
+    let at = vec2<i32>(position.xy);
+    let reach = reach_px();
     var word = 0u;
-    for (var y = first; y < end; y++) {
-        word |= select(0u, 1u << (y - first), textureLoad(outline_words, vec2<u32>(at.x, y), 0).x != 0u);
+    for (var y = max(at.y - reach, 0); y <= min(at.y + reach, i32(view.size_px.y) - 1); y++) {
+        word |= textureLoad(outline_beside, vec2<i32>(at.x, y), 0).x;
     }
     return word;
 }
@@ -305,39 +330,57 @@ fn over(below: vec4<f32>, color: vec4<f32>, share: f32) -> vec4<f32> {
     return mix(below, vec4<f32>(color.rgb, 1.0), share * color.a);
 }
 
+// Whether a seed can do anything to a pixel: it is none, or it lies behind, unless both touch.
+fn may_cover(seed: vec2<u32>, depth: f32, touches: bool) -> bool {
+    return seed.x != 0u && (touches || ((seed.x >> 3u) & 3u) == SIDE_BOTH || depth > bitcast<f32>(seed.y));
+}
+
 @fragment
 fn draw_lines(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let own = vec2<i32>(position.xy);
-    let seen = textureLoad(geometry, own, 0);
-    let depth = select(bitcast<f32>(seen.x), NOWHERE, seen.w == 0u);
-    // A pixel of the seed and one of the footprint beside the width itself.
-    let reach = i32(ceil(outline_params.reach_px + 1.0 + 0.5 * view.footprint_px));
+    let reach = reach_px();
     let last = vec2<i32>(view.size_px) - 1;
-    let low = max(own - reach, vec2<i32>(0)) >> vec2<u32>(5u);
-    let high = min(own + reach, last) >> vec2<u32>(5u);
+    let around = textureLoad(outline_around, vec2<i32>(own.x >> 5u, own.y), 0).x;
     var cover = Cover(vec3<f32>(0.0), 1.0, own);
-    for (var tile_y = low.y; tile_y <= high.y; tile_y++) {
-        for (var tile_x = low.x; tile_x <= high.x; tile_x++) {
-            var rows = textureLoad(outline_rows, vec2<i32>(tile_x, tile_y), 0).x;
-            rows &= bits_between(own.y - reach - 32 * tile_y, own.y + reach - 32 * tile_y);
-            while rows != 0u {
-                let y = 32 * tile_y + i32(firstTrailingBit(rows));
-                rows &= rows - 1u;
-                var word = textureLoad(outline_words, vec2<i32>(tile_x, y), 0).x;
-                word &= bits_between(own.x - reach - 32 * tile_x, own.x + reach - 32 * tile_x);
-                while word != 0u {
-                    let at = vec2<i32>(32 * tile_x + i32(firstTrailingBit(word)), y);
-                    word &= word - 1u;
-                    let seeds = textureLoad(outline_seeds, at, 0);
-                    cover = add_seed(cover, seeds.xy, at, vec2<i32>(1, 0), own, depth);
-                    cover = add_seed(cover, seeds.zw, at, vec2<i32>(0, 1), own, depth);
+    // From the pixel's own row outwards.
+    var rows = select(0, 2 * reach + 1, ((around >> (u32(own.x) & 31u)) & 1u) == 1u);
+    for (var row = 0; row < rows; row++) {
+        let seen = textureLoad(geometry, own, 0);
+        let depth = select(bitcast<f32>(seen.x), NOWHERE, seen.w == 0u);
+        let down = ((row + 1) >> 1u) * select(-1, 1, (row & 1) == 0);
+        let y = own.y + down;
+        let half = min(i32(sqrt(f32(reach * reach - down * down))) + 1, reach);
+        let inside = y >= 0 && y <= last.y;
+        let low = max(own.x - half, 0) >> 5u;
+        let high = select(-1, min(own.x + half, last.x) >> 5u, inside);
+        for (var tile = low; tile <= high; tile++) {
+            var word = textureLoad(outline_words, vec2<i32>(tile, y), 0).x;
+            word &= bits_between(own.x - half - 32 * tile, own.x + half - 32 * tile);
+            while word != 0u {
+                let at = vec2<i32>(32 * tile + i32(firstTrailingBit(word)), y);
+                word &= word - 1u;
+                let seeds = textureLoad(outline_seeds, at, 0);
+                let touches = all(abs(own - at) <= vec2<i32>(1));
+                var crossings = select(0u, 1u, may_cover(seeds.xy, depth, touches));
+                crossings |= select(0u, 2u, may_cover(seeds.zw, depth, touches));
+                while crossings != 0u {
+                    let below = (crossings & 1u) == 0u;
+                    crossings &= crossings - 1u;
+                    let step = select(vec2<i32>(1, 0), vec2<i32>(0, 1), below);
+                    cover = add_seed(cover, select(seeds.xy, seeds.zw, below), at, step, own, depth);
                 }
             }
         }
+        // Nothing lies over a whole silhouette; the first three rows hold the neighbours.
+        if row >= 2 && cover.lines.z >= 1.0 { rows = 0; }
     }
     var result = textureLoad(color, own, 0);
     result = over(result, outline_params.crease_color, cover.lines.x);
     result = over(result, outline_params.boundary_color, cover.lines.y);
     result = over(result, outline_params.silhouette_color, cover.lines.z);
-    return finished(mix(textureLoad(color, cover.front, 0), result, cover.behind));
+    while cover.behind < 1.0 {
+        result = mix(textureLoad(color, cover.front, 0), result, cover.behind);
+        cover.behind = 1.0;
+    }
+    return finished(result);
 }

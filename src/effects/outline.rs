@@ -80,7 +80,7 @@ gpu_struct! {
     }
 }
 
-/// Pixels in a word of the map of seeds, and rows of those in a word of its summary.
+/// Pixels in a word of the map of seeds.
 const WORD_PX: u32 = 32;
 
 /// The effect's registry entry.
@@ -133,7 +133,8 @@ impl PostEffect for Outline {
         const PASSES: &[EffectPass] = &[
             EffectPass { name: "outline_seeds", entry: "find_seeds", target: own(Rgba32Uint, [1, 1]) },
             EffectPass { name: "outline_words", entry: "gather_words", target: own(R32Uint, [WORD_PX, 1]) },
-            EffectPass { name: "outline_rows", entry: "gather_rows", target: own(R32Uint, [WORD_PX, WORD_PX]) },
+            EffectPass { name: "outline_beside", entry: "spread_beside", target: own(R32Uint, [WORD_PX, 1]) },
+            EffectPass { name: "outline_around", entry: "spread_around", target: own(R32Uint, [WORD_PX, 1]) },
             EffectPass { name: "outline", entry: "draw_lines", target: PassTarget::Picture },
         ];
         PASSES

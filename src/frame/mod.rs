@@ -290,6 +290,7 @@ impl Renderer {
         let finished = light.as_ref().unwrap_or(&output);
         let shaded = self.targets.shaded_views();
         let post = shaded.as_ref().map(|(geometry, colors)| PostTargets {
+            ids: &ids,
             geometry,
             colors,
             last: finished,

@@ -70,7 +70,7 @@ pub fn keys(effects: &[Effect], orthographic: bool, encode: bool) -> Vec<EffectK
 }
 
 /// First binding of the textures that an effect's own passes drew.
-const FIRST_OWN_BINDING: u32 = 4;
+const FIRST_OWN_BINDING: u32 = 5;
 
 /// A pipeline for each pass, with the layout of what it reads.
 type Pipelines = Vec<(wgpu::BindGroupLayout, wgpu::RenderPipeline)>;
@@ -89,6 +89,8 @@ pub type EffectGroups = Vec<Vec<wgpu::BindGroup>>;
 
 /// What all effects of a frame read and draw to.
 pub struct PostTargets<'a> {
+    /// Ids of the visibility pass.
+    pub ids: &'a wgpu::TextureView,
     /// The surfaces.
     pub geometry: &'a wgpu::TextureView,
     /// The picture that was shaded, and another one where there are more effects than one.
@@ -180,6 +182,7 @@ impl Post {
                     (1, Bound::Buffer(targets.output.clone())),
                     (2, Bound::View(targets.geometry.clone())),
                     (3, Bound::View(color.clone())),
+                    (4, Bound::View(targets.ids.clone())),
                 ];
                 let earlier = slot.own.iter().take(pass).map(|target| Bound::View(target.view.clone()));
                 bound.extend((FIRST_OWN_BINDING..).zip(earlier));
@@ -234,7 +237,7 @@ fn build(gpu: &Gpu, visibility: &Visibility, key: &EffectKey) -> Result<Pipeline
     let build = |(index, pass): (usize, &EffectPass)| {
         let uint = fullscreen::texture(wgpu::TextureSampleType::Uint);
         let float = fullscreen::texture(wgpu::TextureSampleType::Float { filterable: false });
-        let mut types = vec![fullscreen::UNIFORM, fullscreen::UNIFORM, uint, float];
+        let mut types = vec![fullscreen::UNIFORM, fullscreen::UNIFORM, uint, float, uint];
         types.extend(passes[..index].iter().map(|pass| if is_uint(pass) { uint } else { float }));
         let layout = fullscreen::layout(gpu, pass.name, &types);
         let target: wgpu::ColorTargetState = match (pass.target, key.finish) {
@@ -271,7 +274,8 @@ pub fn effect_module(key: &EffectKey) -> Module {
          @group(1) @binding(0) var<uniform> {}_params: {};\n\
          @group(1) @binding(1) var<uniform> output: Output;\n\
          @group(1) @binding(2) var geometry: texture_2d<u32>;\n\
-         @group(1) @binding(3) var color: texture_2d<f32>;\n",
+         @group(1) @binding(3) var color: texture_2d<f32>;\n\
+         @group(1) @binding(4) var ids: texture_2d<u32>;\n",
         key.orthographic,
         effect.file(),
         effect.params_info().name
