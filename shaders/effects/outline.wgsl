@@ -192,18 +192,34 @@ fn find_seeds(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> 
     let own = textureLoad(ids, at, 0).x;
     // Most neighbours see the same object: a loop skips them, where a condition would not.
     var left = 0u;
-    if own != textureLoad(ids, min(at + vec2<u32>(1u, 0u), last), 0).x || (OUTLINE_CREASES && at.x < last.x) { left |= 1u; }
-    if own != textureLoad(ids, min(at + vec2<u32>(0u, 1u), last), 0).x || (OUTLINE_CREASES && at.y < last.y) { left |= 2u; }
+    let right = textureLoad(ids, min(at + vec2<u32>(1u, 0u), last), 0).x;
+    let below = textureLoad(ids, min(at + vec2<u32>(0u, 1u), last), 0).x;
+    if own != right || (OUTLINE_CREASES && own != 0u && at.x < last.x) { left |= 1u; }
+    if own != below || (OUTLINE_CREASES && own != 0u && at.y < last.y) { left |= 2u; }
     var seeds = vec4<u32>(0u);
     while left != 0u {
         let step = select(vec2<u32>(1u, 0u), vec2<u32>(0u, 1u), (left & 1u) == 0u);
         left &= left - 1u;
         let here = textureLoad(geometry, at, 0);
         let there = textureLoad(geometry, at + step, 0);
-        let seed = seed_between(here, there, position.xy, vec2<f32>(step));
-        seeds = select(vec4<u32>(seed, seeds.zw), vec4<u32>(seeds.xy, seed), step.y == 1u);
+        // Another loop for the same reason: most objects that meet are of one group and no step apart.
+        var is_edge = may_be_edge(here, there);
+        while is_edge {
+            is_edge = false;
+            let seed = seed_between(here, there, position.xy, vec2<f32>(step));
+            seeds = select(vec4<u32>(seed, seeds.zw), vec4<u32>(seeds.xy, seed), step.y == 1u);
+        }
     }
     return seeds;
+}
+
+// Whether two pixels can have a line between them, as far as depths and groups tell: what lies a step behind is at least half
+// a step farther a pixel beside, unless it comes forward more steeply than that.
+fn may_be_edge(a: vec4<u32>, b: vec4<u32>) -> bool {
+    if OUTLINE_CREASES || a.w == 0u || b.w == 0u { return true; }
+    let differs = outline_params.by_object != 0u || (((a.z ^ b.z) >> 16u) & outline_params.group_mask) != 0u;
+    let depths = vec2<f32>(bitcast<f32>(a.x), bitcast<f32>(b.x));
+    return (OUTLINE_BOUNDARIES && differs) || abs(depths.x - depths.y) > 0.5 * outline_params.depth_step;
 }
 
 // The bits of 32 pixels that have seeds.
@@ -220,9 +236,10 @@ fn gather_words(@builtin(position) position: vec4<f32>) -> @location(0) u32 {
     return word;
 }
 
-// How far from a pixel seeds matter to it: a pixel of the seed and the footprint beside the width itself.
+// How far to the right and down of a pixel seeds matter to it: the width and half a footprint. A seed lies up to a pixel
+// to the right of its own pixel, or below, so to the left and up it is one pixel more.
 fn reach_px() -> i32 {
-    return i32(ceil(outline_params.reach_px + 1.0 + 0.5 * view.footprint_px));
+    return i32(floor(outline_params.reach_px + 0.5 * view.footprint_px));
 }
 
 // The bits of pixels that have a seed within reach in their row.
@@ -231,12 +248,13 @@ fn spread_beside(@builtin(position) position: vec4<f32>) -> @location(0) u32 {
     let at = vec2<i32>(position.xy);
     let reach = reach_px();
     var word = textureLoad(outline_words, at, 0).x;
+    word |= word << 1u;
     for (var step = 0; step < min(reach, 31); step++) { word |= (word << 1u) | (word >> 1u); }
     let words = (i32(view.size_px.x) + 31) >> 5u;
-    for (var x = max(at.x - ((reach + 31) >> 5u), 0); x < at.x; x++) {
+    for (var x = max(at.x - ((reach + 32) >> 5u), 0); x < at.x; x++) {
         let left = textureLoad(outline_words, vec2<i32>(x, at.y), 0).x;
         // From the last seed there on, as far as the reach goes.
-        if left != 0u { word |= bits_between(0, reach + i32(firstLeadingBit(left)) - 32 * (at.x - x)); }
+        if left != 0u { word |= bits_between(0, reach + 1 + i32(firstLeadingBit(left)) - 32 * (at.x - x)); }
     }
     for (var x = at.x + 1; x <= min(at.x + ((reach + 31) >> 5u), words - 1); x++) {
         let right = textureLoad(outline_words, vec2<i32>(x, at.y), 0).x;
@@ -251,7 +269,7 @@ fn spread_around(@builtin(position) position: vec4<f32>) -> @location(0) u32 {
     let at = vec2<i32>(position.xy);
     let reach = reach_px();
     var word = 0u;
-    for (var y = max(at.y - reach, 0); y <= min(at.y + reach, i32(view.size_px.y) - 1); y++) {
+    for (var y = max(at.y - reach - 1, 0); y <= min(at.y + reach, i32(view.size_px.y) - 1); y++) {
         word |= textureLoad(outline_beside, vec2<i32>(at.x, y), 0).x;
     }
     return word;
@@ -266,64 +284,100 @@ fn bits_between(low: i32, high: i32) -> u32 {
 // What the lines near a pixel do to it.
 struct Cover {
     // Shares that crease, boundary and silhouette cover.
-    lines: vec3<f32>,
+    crease: f32,
+    boundary: f32,
+    silhouette: f32,
     // Share of the pixel that its neighbour in front does not cover, and that neighbour.
     behind: f32,
     front: vec2<i32>,
 }
 
+// A seed as one pixel sees it.
+struct Near {
+    side: u32,
+    // From the edge, and that with a sign: positive beyond it.
+    distance: f32,
+    signed_distance: f32,
+    // Whether the pixel is the one in front of the edge, and whether it is covered at all.
+    in_front: bool,
+    covered: bool,
+    // Radius of what is outlined in pixels, and whether nothing lies behind.
+    radius: f32,
+    outermost: bool,
+    // Scene units of a pixel at the edge.
+    pixel: f32,
+}
+
 // Length of what a line from `low` to `high` and the square of a sample around `middle` have in common.
-fn overlap(low: vec3<f32>, high: vec3<f32>, middle: f32, footprint: f32) -> vec3<f32> {
-    let half = 0.5 * footprint;
-    return max(min(high, vec3<f32>(middle + half)) - max(low, vec3<f32>(middle - half)), vec3<f32>(0.0));
+fn overlap(low: f32, high: f32, middle: f32) -> f32 {
+    let half = 0.5 * view.footprint_px;
+    return max(min(high, middle + half) - max(low, middle - half), 0.0);
+}
+
+// Share of the sample's square that a line of one kind covers. It fades where it is as wide as what it outlines: a line of
+// 2 px around radii below 4 px, the outermost below half a pixel.
+fn share_of(near: Near, width_px: f32, width_world: f32) -> f32 {
+    var width = width_px;
+    if OUTLINE_WORLD_WIDTHS { width = min(width_px + width_world / near.pixel, outline_params.reach_px); }
+    let fade_from = select(2.0 * clamp(width, 0.01, 2.0), 0.5, near.outermost);
+    let fade = min(near.radius / fade_from, 1.0);
+    let footprint = view.footprint_px;
+    if near.side == SIDE_BOTH { return fade * overlap(-0.5 * width, 0.5 * width, near.distance) / footprint; }
+    // In front: only what the pixel has of beyond the edge. Behind: the line's share of what is not in front.
+    let middle = select(near.distance, min(near.signed_distance, 0.0), near.in_front);
+    let visible = select(min(near.distance + 0.5 * footprint, footprint), footprint, near.in_front);
+    return fade * overlap(0.0, width, middle) / visible;
 }
 
 // Adds what one seed covers of the pixel `own` at `depth`.
-fn add_seed(cover: Cover, seed: vec2<u32>, at: vec2<i32>, step: vec2<i32>, own: vec2<i32>, depth: f32) -> Cover {
+fn add_seed(before: Cover, seed: vec2<u32>, at: vec2<i32>, step: vec2<i32>, own: vec2<i32>, depth: f32) -> Cover {
     let what = seed.x;
-    let side = (what >> 3u) & 3u;
+    let covers_beyond = bitcast<f32>(seed.y);
     let place = f32((what >> 5u) & 255u) / 255.0;
     let across = normalize(vec2<f32>(f32((what >> 13u) & 63u), f32((what >> 19u) & 63u)) - 31.5);
     let from_edge = vec2<f32>(own - at) - place * vec2<f32>(step);
-    let signed_distance = dot(from_edge, across);
+    var near: Near;
+    near.side = (what >> 3u) & 3u;
+    near.pixel = pixel_world(view, covers_beyond);
+    near.signed_distance = dot(from_edge, across);
     let along = max(abs(dot(from_edge, vec2<f32>(-across.y, across.x))) - HALF_SEGMENT_PX, 0.0);
-    let distance = sqrt(signed_distance * signed_distance + along * along);
-    let covers_beyond = bitcast<f32>(seed.y);
-    let pixel = pixel_world(view, covers_beyond);
-    let width = min(outline_params.width_px + outline_params.width_world / pixel, vec3<f32>(outline_params.reach_px));
-    let footprint = view.footprint_px;
-
-    var shares = vec3<f32>(0.0);
+    near.distance = sqrt(near.signed_distance * near.signed_distance + along * along);
+    let radius = (what >> 25u) & 63u;
+    near.radius = select(f32(radius) / 8.0, NOWHERE, radius == 63u);
+    near.outermost = (what >> 31u) != 0u;
     let first = all(own == at);
     let second = all(own == at + step);
-    var behind = 1.0;
-    if side == SIDE_BOTH {
-        // Both surfaces come forward from where they meet, as steeply as 2.
-        let in_reach = depth > covers_beyond - (2.0 * distance + 2.0) * pixel;
-        shares = overlap(-0.5 * width, 0.5 * width, distance, footprint) / footprint;
-        shares = select(vec3<f32>(0.0), shares, in_reach);
-    } else if (first && side == SIDE_FIRST) || (second && side == SIDE_SECOND) {
-        // In front: only what the pixel has of beyond the edge.
-        shares = overlap(vec3<f32>(0.0), width, min(signed_distance, 0.0), footprint) / footprint;
-    } else if depth > covers_beyond {
-        let visible = min(distance + 0.5 * footprint, footprint);
-        shares = overlap(vec3<f32>(0.0), width, distance, footprint) / visible;
-        behind = select(1.0, visible / footprint, first || second);
+    near.in_front = (first && near.side == SIDE_FIRST) || (second && near.side == SIDE_SECOND);
+    // Where surfaces meet, both come forward from there, as steeply as 2.
+    let slack = select(0.0, (2.0 * near.distance + 2.0) * near.pixel, near.side == SIDE_BOTH);
+    near.covered = near.in_front || depth > covers_beyond - slack;
+
+    var cover = before;
+    var most = 0.0;
+    if OUTLINE_CREASES {
+        let share = share_of(near, outline_params.width_px.x, outline_params.width_world.x);
+        let drawn = select(0.0, share, near.covered && (what & CREASE) != 0u);
+        cover.crease = max(cover.crease, drawn);
+        most = max(most, drawn);
     }
-    // Lines fade where they are as wide as what they outline: a line of 2 px around radii below 4 px, the outermost below half
-    // a pixel.
-    let radius = select(f32((what >> 25u) & 63u) / 8.0, 64.0, ((what >> 25u) & 63u) == 63u);
-    let inner = clamp(vec3<f32>(radius) / (2.0 * min(max(width, vec3<f32>(0.01)), vec3<f32>(2.0))), vec3<f32>(0.0), vec3<f32>(1.0));
-    let fade = select(inner, vec3<f32>(min(2.0 * radius, 1.0)), (what >> 31u) != 0u);
-    let drawn = (vec3<u32>(what) & vec3<u32>(CREASE, BOUNDARY, SILHOUETTE)) != vec3<u32>(0u);
-    shares = select(vec3<f32>(0.0), fade * shares, drawn);
-    behind = select(1.0, behind, any(shares > vec3<f32>(0.0)));
-    let front = select(at + step, at, side == SIDE_FIRST);
-    return Cover(
-        max(cover.lines, shares),
-        min(cover.behind, behind),
-        select(cover.front, front, behind < cover.behind),
-    );
+    if OUTLINE_BOUNDARIES {
+        let share = share_of(near, outline_params.width_px.y, outline_params.width_world.y);
+        let drawn = select(0.0, share, near.covered && (what & BOUNDARY) != 0u);
+        cover.boundary = max(cover.boundary, drawn);
+        most = max(most, drawn);
+    }
+    if OUTLINE_SILHOUETTES {
+        let share = share_of(near, outline_params.width_px.z, outline_params.width_world.z);
+        let drawn = select(0.0, share, near.covered && (what & SILHOUETTE) != 0u);
+        cover.silhouette = max(cover.silhouette, drawn);
+        most = max(most, drawn);
+    }
+    // The pixel right behind an edge shows what is in front where the edge runs through it.
+    let shows = most > 0.0 && near.side != SIDE_BOTH && !near.in_front && (first || second);
+    let behind = select(1.0, min(near.distance / view.footprint_px + 0.5, 1.0), shows);
+    cover.front = select(cover.front, select(at + step, at, near.side == SIDE_FIRST), behind < cover.behind);
+    cover.behind = min(cover.behind, behind);
+    return cover;
 }
 
 fn over(below: vec4<f32>, color: vec4<f32>, share: f32) -> vec4<f32> {
@@ -338,29 +392,51 @@ fn may_cover(seed: vec2<u32>, depth: f32, touches: bool) -> bool {
 @fragment
 fn draw_lines(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let own = vec2<i32>(position.xy);
+    let around = textureLoad(outline_around, vec2<i32>(own.x >> 5u, own.y), 0).x;
+    var cover = Cover(0.0, 0.0, 0.0, 1.0, own);
+    // Far from all seeds the loops below are none.
+    var is_near = ((around >> (u32(own.x) & 31u)) & 1u) == 1u;
+    while is_near {
+        is_near = false;
+        cover = cover_of(own);
+    }
+    var result = textureLoad(color, own, 0);
+    if OUTLINE_CREASES { result = over(result, outline_params.crease_color, cover.crease); }
+    if OUTLINE_BOUNDARIES { result = over(result, outline_params.boundary_color, cover.boundary); }
+    if OUTLINE_SILHOUETTES { result = over(result, outline_params.silhouette_color, cover.silhouette); }
+    while cover.behind < 1.0 {
+        result = mix(textureLoad(color, cover.front, 0), result, cover.behind);
+        cover.behind = 1.0;
+    }
+    return finished(result);
+}
+
+// All seeds within reach, from the pixel's own row outwards.
+fn cover_of(own: vec2<i32>) -> Cover {
     let reach = reach_px();
     let last = vec2<i32>(view.size_px) - 1;
-    let around = textureLoad(outline_around, vec2<i32>(own.x >> 5u, own.y), 0).x;
-    var cover = Cover(vec3<f32>(0.0), 1.0, own);
-    // From the pixel's own row outwards.
-    var rows = select(0, 2 * reach + 1, ((around >> (u32(own.x) & 31u)) & 1u) == 1u);
+    let seen = textureLoad(geometry, own, 0);
+    let depth = select(bitcast<f32>(seen.x), NOWHERE, seen.w == 0u);
+    var cover = Cover(0.0, 0.0, 0.0, 1.0, own);
+    var rows = 2 * reach + 2;
     for (var row = 0; row < rows; row++) {
-        let seen = textureLoad(geometry, own, 0);
-        let depth = select(bitcast<f32>(seen.x), NOWHERE, seen.w == 0u);
+        // 0, one up, one down, two up ...
         let down = ((row + 1) >> 1u) * select(-1, 1, (row & 1) == 0);
         let y = own.y + down;
-        let half = min(i32(sqrt(f32(reach * reach - down * down))) + 1, reach);
+        // A disc of the reach and a pixel.
+        let wide = f32((reach + 1) * (reach + 1) - down * down);
+        let half = i32(sqrt(wide)) + 1;
+        let left = own.x - min(half, reach + 1);
+        let right = own.x + min(half, reach);
         let inside = y >= 0 && y <= last.y;
-        let low = max(own.x - half, 0) >> 5u;
-        let high = select(-1, min(own.x + half, last.x) >> 5u, inside);
-        for (var tile = low; tile <= high; tile++) {
+        for (var tile = max(left, 0) >> 5u; tile <= select(-1, min(right, last.x) >> 5u, inside); tile++) {
             var word = textureLoad(outline_words, vec2<i32>(tile, y), 0).x;
-            word &= bits_between(own.x - half - 32 * tile, own.x + half - 32 * tile);
+            word &= bits_between(left - 32 * tile, right - 32 * tile);
             while word != 0u {
                 let at = vec2<i32>(32 * tile + i32(firstTrailingBit(word)), y);
                 word &= word - 1u;
                 let seeds = textureLoad(outline_seeds, at, 0);
-                let touches = all(abs(own - at) <= vec2<i32>(1));
+                let touches = all(own >= at) && all(own <= at + 1);
                 var crossings = select(0u, 1u, may_cover(seeds.xy, depth, touches));
                 crossings |= select(0u, 2u, may_cover(seeds.zw, depth, touches));
                 while crossings != 0u {
@@ -371,16 +447,8 @@ fn draw_lines(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> 
                 }
             }
         }
-        // Nothing lies over a whole silhouette; the first three rows hold the neighbours.
-        if row >= 2 && cover.lines.z >= 1.0 { rows = 0; }
+        // Nothing lies over a whole silhouette; the first two rows hold the seeds of the pixel's own edges.
+        if row >= 1 && cover.silhouette >= 1.0 { rows = 0; }
     }
-    var result = textureLoad(color, own, 0);
-    result = over(result, outline_params.crease_color, cover.lines.x);
-    result = over(result, outline_params.boundary_color, cover.lines.y);
-    result = over(result, outline_params.silhouette_color, cover.lines.z);
-    while cover.behind < 1.0 {
-        result = mix(textureLoad(color, cover.front, 0), result, cover.behind);
-        cover.behind = 1.0;
-    }
-    return finished(result);
+    return cover;
 }

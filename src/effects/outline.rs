@@ -143,10 +143,13 @@ impl PostEffect for Outline {
         WIDTHS.iter().any(|name| is_drawn(values.length(name)))
     }
     fn features(&self) -> &'static [&'static str] {
-        &["OUTLINE_CREASES", "OUTLINE_BOUNDARIES", "OUTLINE_SILHOUETTES"]
+        &["OUTLINE_CREASES", "OUTLINE_BOUNDARIES", "OUTLINE_SILHOUETTES", "OUTLINE_WORLD_WIDTHS"]
     }
     fn features_used(&self, values: &Values) -> u32 {
-        WIDTHS.iter().enumerate().map(|(bit, name)| u32::from(is_drawn(values.length(name))) << bit).sum()
+        let in_points = |length| matches!(length, Length::Points(_)) || !is_drawn(length);
+        let world = !WIDTHS.iter().all(|name| in_points(values.length(name)));
+        let drawn = WIDTHS.map(|name| is_drawn(values.length(name)));
+        drawn.into_iter().chain([world]).enumerate().map(|(bit, used)| u32::from(used) << bit).sum()
     }
 }
 

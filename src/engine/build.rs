@@ -7,8 +7,8 @@ use glam::Vec3;
 
 use super::palette::AtomColors;
 use crate::config::{AtomRadius, BaseColor, Geometry, Style, Value};
-use crate::frame::Materials;
 use crate::effects::outline::group_word;
+use crate::frame::Materials;
 use crate::frame::objects::{self, Connector, DrawList, Material, pack_linear, pack_linear_and_group};
 use crate::providers::{Assignment, Lengths};
 use crate::scene::{Atom, Bond, Molecule};

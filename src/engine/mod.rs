@@ -359,12 +359,7 @@ fn resolve(content: &Content, drawn: Option<&Drawn>, height_px: u32) -> Resolved
 }
 
 /// Calls `draw` with what a frame of the content needs beside objects and materials.
-fn frame_input<T>(
-    content: &Content,
-    drawn: &Drawn,
-    request: &Request,
-    draw: impl FnOnce(&FrameInput<'_>) -> T,
-) -> T {
+fn frame_input<T>(content: &Content, drawn: &Drawn, request: &Request, draw: impl FnOnce(&FrameInput<'_>) -> T) -> T {
     let camera = content.camera.camera(request.size);
     let lighting = drawn.lighting.lighting(&camera);
     let effects = effects(&content.style, &drawn.lengths, &camera, request.size[1]);

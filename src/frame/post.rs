@@ -247,8 +247,7 @@ fn build(gpu: &Gpu, visibility: &Visibility, key: &EffectKey) -> Result<Pipeline
             (PassTarget::Picture, Finish::Encode) => super::OUTPUT_8.into(),
         };
         let entries = ["post_vertex", pass.entry];
-        let pipeline =
-            fullscreen::pipeline(gpu, pass.name, &module, entries, &[&visibility.layout, &layout], target)?;
+        let pipeline = fullscreen::pipeline(gpu, pass.name, &module, entries, &[&visibility.layout, &layout], target)?;
         Ok((layout, pipeline))
     };
     passes.iter().enumerate().map(build).collect()

@@ -8,7 +8,8 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{AddressSpace, Handle, Type, TypeInner};
 use restyle::effects::EFFECTS;
 use restyle::frame::{
-    EffectKey, Finish, ShadeKey, ShaderNeeds, VisibilityKey, aov_module, effect_module, resolve_module, shade_module, visibility_module,
+    EffectKey, Finish, ShadeKey, ShaderNeeds, VisibilityKey, aov_module, effect_module, resolve_module, shade_module,
+    visibility_module,
 };
 use restyle::gpu::Module;
 use restyle::shading::SHADERS;

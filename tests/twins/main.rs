@@ -7,6 +7,8 @@ mod environment;
 mod furnace;
 mod gpu;
 mod impostors;
+mod outline;
+mod outline_truth;
 mod outlines;
 mod output;
 mod sampling;
