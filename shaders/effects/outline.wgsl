@@ -48,8 +48,8 @@ const HALF_SEGMENT_PX: f32 = 0.71;
 const MOST_RADIUS: f32 = 63.0;
 
 // A hull outline is drawn already, and no surface.
-fn is_line(g: Geometry) -> bool {
-    return g.id != 0u && g.depth <= 0.0;
+fn is_line(texel: vec4<u32>) -> bool {
+    return texel.w != 0u && texel.x == 0u;
 }
 
 // A surface beyond its own pixel, on a neighbour's ray.
@@ -155,7 +155,6 @@ fn seed_between(a_texel: vec4<u32>, b_texel: vec4<u32>, position: vec2<f32>, ste
         let angle = max(dot(normal_a, b.normal_view), dot(normal_b, a.normal_view));
         if angle < outline_params.crease_cosine { kinds |= CREASE; }
     }
-    if is_line(a) || is_line(b) { kinds = 0u; }
     if kinds == 0u { return vec2<u32>(0u); }
 
     // The edge's normal in the picture, to what is behind.
@@ -216,24 +215,32 @@ fn find_seeds(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> 
 // Whether two pixels can have a line between them, as far as depths and groups tell: what lies a step behind is at least half
 // a step farther a pixel beside, unless it comes forward more steeply than that.
 fn may_be_edge(a: vec4<u32>, b: vec4<u32>) -> bool {
+    if is_line(a) || is_line(b) { return false; }
     if OUTLINE_CREASES || a.w == 0u || b.w == 0u { return true; }
     let differs = outline_params.by_object != 0u || (((a.z ^ b.z) >> 16u) & outline_params.group_mask) != 0u;
     let depths = vec2<f32>(bitcast<f32>(a.x), bitcast<f32>(b.x));
     return (OUTLINE_BOUNDARIES && differs) || abs(depths.x - depths.y) > 0.5 * outline_params.depth_step;
 }
 
-// The bits of 32 pixels that have seeds.
+// The bits of 32 pixels that have seeds, and the least depth beyond which one of those covers, as bits: those of positive
+// numbers are ordered as the numbers are.
 @fragment
-fn gather_words(@builtin(position) position: vec4<f32>) -> @location(0) u32 {
+fn gather_words(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
     let at = vec2<u32>(position.xy);
     let first = 32u * at.x;
     let end = min(first + 32u, u32(view.size_px.x));
-    var word = 0u;
+    var word = vec2<u32>(0u, bitcast<u32>(NOWHERE));
     for (var x = first; x < end; x++) {
         let seeds = textureLoad(outline_seeds, vec2<u32>(x, at.y), 0);
-        word |= select(0u, 1u << (x - first), (seeds.x | seeds.z) != 0u);
+        word.x |= select(0u, 1u << (x - first), (seeds.x | seeds.z) != 0u);
+        word.y = min(word.y, min(least_covered(seeds.xy), least_covered(seeds.zw)));
     }
     return word;
+}
+
+fn least_covered(seed: vec2<u32>) -> u32 {
+    if seed.x == 0u { return bitcast<u32>(NOWHERE); }
+    return select(seed.y, 0u, ((seed.x >> 3u) & 3u) == SIDE_BOTH);
 }
 
 // How far to the right and down of a pixel seeds matter to it: the width and half a footprint. A seed lies up to a pixel
@@ -242,37 +249,41 @@ fn reach_px() -> i32 {
     return i32(floor(outline_params.reach_px + 0.5 * view.footprint_px));
 }
 
-// The bits of pixels that have a seed within reach in their row.
+// The bits of pixels that have a seed within reach in their row, and the least depth that any there covers.
 @fragment
-fn spread_beside(@builtin(position) position: vec4<f32>) -> @location(0) u32 {
+fn spread_beside(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
     let at = vec2<i32>(position.xy);
     let reach = reach_px();
-    var word = textureLoad(outline_words, at, 0).x;
-    word |= word << 1u;
+    let own = textureLoad(outline_words, at, 0).xy;
+    var word = own.x | (own.x << 1u);
+    var least = own.y;
     for (var step = 0; step < min(reach, 31); step++) { word |= (word << 1u) | (word >> 1u); }
     let words = (i32(view.size_px.x) + 31) >> 5u;
     for (var x = max(at.x - ((reach + 32) >> 5u), 0); x < at.x; x++) {
-        let left = textureLoad(outline_words, vec2<i32>(x, at.y), 0).x;
+        let left = textureLoad(outline_words, vec2<i32>(x, at.y), 0);
         // From the last seed there on, as far as the reach goes.
-        if left != 0u { word |= bits_between(0, reach + 1 + i32(firstLeadingBit(left)) - 32 * (at.x - x)); }
+        if left.x != 0u { word |= bits_between(0, reach + 1 + i32(firstLeadingBit(left.x)) - 32 * (at.x - x)); }
+        least = min(least, left.y);
     }
     for (var x = at.x + 1; x <= min(at.x + ((reach + 31) >> 5u), words - 1); x++) {
-        let right = textureLoad(outline_words, vec2<i32>(x, at.y), 0).x;
-        if right != 0u { word |= bits_between(i32(firstTrailingBit(right)) + 32 * (x - at.x) - reach, 31); }
+        let right = textureLoad(outline_words, vec2<i32>(x, at.y), 0);
+        if right.x != 0u { word |= bits_between(i32(firstTrailingBit(right.x)) + 32 * (x - at.x) - reach, 31); }
+        least = min(least, right.y);
     }
-    return word;
+    return vec2<u32>(word, least);
 }
 
-// The bits of pixels that have a seed within reach at all.
+// The bits of pixels that have a seed within reach at all, and the least depth that any there covers.
 @fragment
-fn spread_around(@builtin(position) position: vec4<f32>) -> @location(0) u32 {
+fn spread_around(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
     let at = vec2<i32>(position.xy);
     let reach = reach_px();
-    var word = 0u;
+    var around = vec2<u32>(0u, bitcast<u32>(NOWHERE));
     for (var y = max(at.y - reach - 1, 0); y <= min(at.y + reach, i32(view.size_px.y) - 1); y++) {
-        word |= textureLoad(outline_beside, vec2<i32>(at.x, y), 0).x;
+        let beside = textureLoad(outline_beside, vec2<i32>(at.x, y), 0);
+        around = vec2<u32>(around.x | beside.x, min(around.y, beside.y));
     }
-    return word;
+    return around;
 }
 
 // Bits from `low` to `high`, both included and cut to 0..31.
@@ -392,13 +403,13 @@ fn may_cover(seed: vec2<u32>, depth: f32, touches: bool) -> bool {
 @fragment
 fn draw_lines(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let own = vec2<i32>(position.xy);
-    let around = textureLoad(outline_around, vec2<i32>(own.x >> 5u, own.y), 0).x;
+    let around = textureLoad(outline_around, vec2<i32>(own.x >> 5u, own.y), 0);
     var cover = Cover(0.0, 0.0, 0.0, 1.0, own);
     // Far from all seeds the loops below are none.
-    var is_near = ((around >> (u32(own.x) & 31u)) & 1u) == 1u;
+    var is_near = ((around.x >> (u32(own.x) & 31u)) & 1u) == 1u;
     while is_near {
         is_near = false;
-        cover = cover_of(own);
+        cover = cover_of(own, around.y);
     }
     var result = textureLoad(color, own, 0);
     if OUTLINE_CREASES { result = over(result, outline_params.crease_color, cover.crease); }
@@ -411,14 +422,15 @@ fn draw_lines(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> 
     return finished(result);
 }
 
-// All seeds within reach, from the pixel's own row outwards.
-fn cover_of(own: vec2<i32>) -> Cover {
+// All seeds within reach, from the pixel's own row outwards. In front of all that those cover (`least`), only the rows that can
+// hold seeds of the pixel's own edges.
+fn cover_of(own: vec2<i32>, least: u32) -> Cover {
     let reach = reach_px();
     let last = vec2<i32>(view.size_px) - 1;
     let seen = textureLoad(geometry, own, 0);
     let depth = select(bitcast<f32>(seen.x), NOWHERE, seen.w == 0u);
     var cover = Cover(0.0, 0.0, 0.0, 1.0, own);
-    var rows = 2 * reach + 2;
+    var rows = select(2 * reach + 2, 2, bitcast<u32>(depth) <= least);
     for (var row = 0; row < rows; row++) {
         // 0, one up, one down, two up ...
         let down = ((row + 1) >> 1u) * select(-1, 1, (row & 1) == 0);

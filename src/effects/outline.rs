@@ -129,12 +129,12 @@ impl PostEffect for Outline {
         const fn own(format: wgpu::TextureFormat, pixels: [u32; 2]) -> PassTarget {
             PassTarget::Own { format, pixels }
         }
-        use wgpu::TextureFormat::{R32Uint, Rgba32Uint};
+        use wgpu::TextureFormat::{Rg32Uint, Rgba32Uint};
         const PASSES: &[EffectPass] = &[
             EffectPass { name: "outline_seeds", entry: "find_seeds", target: own(Rgba32Uint, [1, 1]) },
-            EffectPass { name: "outline_words", entry: "gather_words", target: own(R32Uint, [WORD_PX, 1]) },
-            EffectPass { name: "outline_beside", entry: "spread_beside", target: own(R32Uint, [WORD_PX, 1]) },
-            EffectPass { name: "outline_around", entry: "spread_around", target: own(R32Uint, [WORD_PX, 1]) },
+            EffectPass { name: "outline_words", entry: "gather_words", target: own(Rg32Uint, [WORD_PX, 1]) },
+            EffectPass { name: "outline_beside", entry: "spread_beside", target: own(Rg32Uint, [WORD_PX, 1]) },
+            EffectPass { name: "outline_around", entry: "spread_around", target: own(Rg32Uint, [WORD_PX, 1]) },
             EffectPass { name: "outline", entry: "draw_lines", target: PassTarget::Picture },
         ];
         PASSES
