@@ -5,6 +5,7 @@
 
 pub mod cli;
 pub mod config;
+pub mod effects;
 pub mod engine;
 pub mod frame;
 pub mod gpu;

@@ -122,6 +122,7 @@ fn unpack_vertex_color(bits: u32) -> vec3<f32> {
 // A point of a triangle, in view space.
 struct MeshPoint {
     t: f32,
+    part: u32,
     // Unit, interpolated between the vertices, turned to the viewer.
     normal: vec3<f32>,
     base_color: vec3<f32>,
@@ -161,6 +162,7 @@ fn mesh_point(ray: Ray, index: u32) -> MeshPoint {
     share_c /= sum;
 
     var point: MeshPoint;
+    point.part = corners.part;
     point.t = -(a.z + share_b * along_b.z + share_c * along_c.z);
     let to_view_normal = mat3x3<f32>(view.view_from_world[0].xyz, view.view_from_world[1].xyz, view.view_from_world[2].xyz);
     let na = to_view_normal * normalize(mesh_normal_to_world(part, unpack_normal(va.normal)));

@@ -6,7 +6,8 @@ struct Atom {
     // Linear RGB as half floats: (r, g), (b, unused).
     color: vec2<u32>,
     material: u32,
-    _pad0: u32,
+    // Chain (7 bits) and residue (9 bits), as far as neighbours need them to differ.
+    group: u32,
 }
 
 struct Connector {
@@ -14,6 +15,7 @@ struct Connector {
     radius: f32,
     b_world: vec3<f32>,
     material: u32,
+    // Colours of the halves, as an atom's; in their unused 16 bits the groups of the atoms there.
     color_a: vec2<u32>,
     color_b: vec2<u32>,
 }
@@ -52,21 +54,6 @@ fn connector_at(index: u32) -> Connector {
     return Connector(
         bitcast<vec3<f32>>(a.xyz), bitcast<f32>(a.w), bitcast<vec3<f32>>(b.xyz), b.w, colors.xy, colors.zw,
     );
-}
-
-// An id holds what a pixel sees: kind in the upper 3 bits, index in the lower 29; 0 is nothing.
-const KIND_ATOM: u32 = 1u;
-const KIND_CONNECTOR: u32 = 2u;
-const KIND_MESH: u32 = 3u;
-// Outlines come after all surfaces.
-const KIND_ATOM_HULL: u32 = 4u;
-const KIND_CONNECTOR_HULL: u32 = 5u;
-const KIND_MESH_HULL: u32 = 6u;
-const KIND_LAST_SURFACE: u32 = KIND_MESH;
-const INDEX_MASK: u32 = 0x1fffffffu;
-
-fn make_id(kind: u32, index: u32) -> u32 {
-    return (kind << 29u) | index;
 }
 
 fn unpack_linear(color: vec2<u32>) -> vec3<f32> {

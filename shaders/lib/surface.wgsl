@@ -16,6 +16,12 @@ struct Surface {
     normal_dy: vec3<f32>,
     to_viewer_dx: vec3<f32>,
     to_viewer_dy: vec3<f32>,
+    // Curvature across its axis: 1 over the radius, 0 where flat.
+    bend: f32,
+    // Which group of objects (16 bits): of atoms, chain (7 bits) and residue (9).
+    group: u32,
+    // The object itself: of a triangle its part, where `id` is the triangle's.
+    object: u32,
     id: u32,
 }
 
@@ -60,12 +66,14 @@ fn surface_at(ray: Ray, id: u32) -> Surface {
         t = mesh.t;
         normal = mesh.normal;
         s.base_color = mesh.base_color;
+        s.group = mesh.part & 0xffffu;
     } else if ATOMS && (!CONNECTORS || (id >> 29u) == KIND_ATOM) {
         let atom = atom_at(index);
         let center = to_view(view, atom.position_world);
         t = seen_at(ray, sphere_span(ray, center, atom.radius), center);
         normal = sphere_normal(ray, t, center, atom.radius);
         s.base_color = unpack_linear(atom.color);
+        s.group = atom.group;
         bend = 1.0 / atom.radius;
     } else if CONNECTORS {
         let connector = connector_at(index);
@@ -75,7 +83,9 @@ fn surface_at(ray: Ray, id: u32) -> Surface {
         normal = cylinder_normal(ray, t, a, b, connector.radius);
         axis = normalize(b - a);
         let along = dot(ray.origin + t * ray.direction - 0.5 * (a + b), axis);
-        s.base_color = unpack_linear(select(connector.color_a, connector.color_b, along > 0.0));
+        let half = select(connector.color_a, connector.color_b, along > 0.0);
+        s.base_color = unpack_linear(half);
+        s.group = half.y >> 16u;
         // A cap is flat.
         bend = select(1.0 / connector.radius, 0.0, abs(dot(normal, axis)) > 0.5);
     }
@@ -83,6 +93,9 @@ fn surface_at(ray: Ray, id: u32) -> Surface {
     let turned = select(1.0, -1.0, dot(normal, ray.direction) > 0.0);
     normal *= turned;
     s.id = id;
+    s.object = id;
+    if MESHES && is_mesh { s.object = make_id(KIND_MESH, mesh.part); }
+    s.bend = bend;
     s.position_view = ray.origin + t * ray.direction;
     s.normal_view = normal;
     s.to_viewer = -normalize(ray.direction);

@@ -28,14 +28,20 @@ fn shade_vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f
     return vec4<f32>(f32(corner & 1u) * 4.0 - 1.0, f32(corner >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }
 
-@fragment
-fn shade_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let id = textureLoad(visibility, vec2<i32>(position.xy), 0).x;
+// Linear light of a surface; of a hull outline its colour.
+fn shaded(s: Surface, id: u32) -> vec3<f32> {
     let material = material_of(id);
-    var color = shade_object(surface_at(ray_at(view, position.xy), id), material);
+    var color = shade_object(s, material);
     if HULLS && (id >> 29u) > KIND_LAST_SURFACE {
         color = materials[material].hull_color.rgb;
     }
+    return color;
+}
+
+@fragment
+fn shade_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let id = textureLoad(visibility, vec2<i32>(position.xy), 0).x;
+    let color = shaded(surface_at(ray_at(view, position.xy), id), id);
     if ENCODE {
         return encode(vec4<f32>(color, 1.0), output.background);
     }

@@ -8,9 +8,10 @@ use glam::Vec3;
 
 use super::palette::{AtomColors, PartColors};
 use crate::config::{AtomRadius, BaseColor, Geometry, Origin, ShaderUse, Style, Value, Values};
+use crate::effects::outline::group_word;
 use crate::frame::Materials;
 use crate::frame::mesh::MeshPart;
-use crate::frame::objects::{self, Connector, DrawList, Material, pack_linear};
+use crate::frame::objects::{self, Connector, DrawList, Material, pack_linear, pack_linear_and_group};
 use crate::providers::{Assignment, Lengths};
 use crate::scene::{Atom, Bond, MeshMaterial, Molecule, MoleculeCopy, Scene};
 use crate::shading::{self, MaterialContext, SHADERS};
@@ -100,6 +101,8 @@ fn molecule_objects(
     let by_residue = style.shaders.iter().any(|shader| own_scheme(shader) == BaseColor::Residue);
     let colors = AtomColors::new(molecule, by_residue);
 
+    let group = |atom: &Atom| group_word(molecule.residue(atom).chain, atom.residue);
+
     let mut list = DrawList::default();
     // Which atom and which bond each object is, where copies need to know.
     let is_copied = !molecule.copies.is_empty();
@@ -112,7 +115,7 @@ fn molecule_objects(
                 radius,
                 color: pack_linear(colors.of(molecule, atom, own_scheme(&style.shaders[used]))),
                 material: materials.of(plain_use(used)),
-                _pad0: 0,
+                group: group(atom),
             });
             atom_of.extend(is_copied.then_some(index));
         }
@@ -141,8 +144,8 @@ fn molecule_objects(
                 radius,
                 b_world: (b.position + offset).to_array(),
                 material,
-                color_a: pack_linear(colors.of(molecule, a, scheme)),
-                color_b: pack_linear(colors.of(molecule, b, scheme)),
+                color_a: pack_linear_and_group(colors.of(molecule, a, scheme), group(a)),
+                color_b: pack_linear_and_group(colors.of(molecule, b, scheme), group(b)),
             });
             bond_of.extend(is_copied.then_some(*bond));
         }

@@ -15,11 +15,12 @@ use std::time::Instant;
 use glam::DVec3;
 
 use crate::config::{CatalogEntry, LightKind, ObjectKind, Role, Shadow, Style};
+use crate::effects::{EFFECTS, EffectContext, effect_index};
 use crate::frame::objects::DrawList;
-use crate::frame::{self, Aovs, FrameInput, Materials, Renderer, TargetBytes};
+use crate::frame::{self, Aovs, Effect, FrameInput, Materials, Renderer, TargetBytes};
 use crate::gpu::PassTimes;
 use crate::providers::{CameraProvider, Lengths, LightingProvider, ShaderProvider};
-use crate::scene::{AovImage, Image, Pixels, Scene};
+use crate::scene::{AovImage, Camera, Image, Pixels, Scene};
 use crate::shading::SHADERS;
 use build::ObjectKey;
 use live::Live;
@@ -30,11 +31,10 @@ pub use live::{Part, Refusal, Reload, ReloadTimes, Sources, source_tree_shaders}
 pub use tiles::TileError;
 
 /// Effects and shaders of the contract that this version names but does not draw.
-const NOT_DRAWN: [(&str, Role, &str); 4] = [
+const NOT_DRAWN: [(&str, Role, &str); 3] = [
     ("curvature", Role::Object, "Glass that is clearer where the surface is flat."),
     ("ssaoPost", Role::PostEffect, "Darkens creases and contacts."),
     ("dofPost", Role::PostEffect, "Blurs what is out of focus."),
-    ("outlinePost", Role::PostEffect, "Lines where depth or direction jump."),
 ];
 
 /// Types of objects that this version draws.
@@ -42,13 +42,10 @@ pub const DRAWN_KINDS: &[ObjectKind] = &[ObjectKind::Atom, ObjectKind::Connector
 
 /// Names and parameter tables of everything a style can refer to, from the registries.
 pub fn catalog() -> Vec<CatalogEntry> {
-    let drawn = SHADERS.iter().map(|shader| CatalogEntry {
-        name: shader.name(),
-        role: Role::Object,
-        doc: shader.doc(),
-        params: shader.params(),
-        drawn: true,
-    });
+    let drawn = SHADERS.iter().map(|shader| (shader.name(), Role::Object, shader.doc(), shader.params()));
+    let effects = EFFECTS.iter().map(|effect| (effect.name(), Role::PostEffect, effect.doc(), effect.params()));
+    let drawn =
+        drawn.chain(effects).map(|(name, role, doc, params)| CatalogEntry { name, role, doc, params, drawn: true });
     let named = NOT_DRAWN.iter().map(|&(name, role, doc)| CatalogEntry { name, role, doc, params: &[], drawn: false });
     drawn.chain(named).collect()
 }
@@ -182,7 +179,7 @@ impl Engine {
     }
 
     /// The camera for a picture of this size, once there is something to see.
-    pub fn camera(&self, size: [u32; 2]) -> Option<crate::scene::Camera> {
+    pub fn camera(&self, size: [u32; 2]) -> Option<Camera> {
         self.content.as_ref().map(|content| content.camera.camera(size))
     }
 
@@ -215,7 +212,7 @@ impl Engine {
         let known = self.drawn.as_ref().filter(|_| !scene_is_new);
         let resolved = resolve(&content, known, request.size[1]);
         let resolved_at = Instant::now();
-        frame_input(&content, &resolved.drawn.lighting, &request, |input| {
+        frame_input(&content, &resolved.drawn, &request, |input| {
             self.renderer.prepare(resolved.list.as_ref(), &resolved.materials, input)
         })?;
         self.take(resolved)?;
@@ -263,8 +260,7 @@ impl Engine {
 
     /// How far what a pixel sees changes others, in pixels.
     fn reach_px(&mut self, request: &Request) -> Result<u32, GpuError> {
-        self.refresh(request.size[1])?;
-        Ok(self.renderer.reach_px())
+        self.with_input(request, |_, input| Ok(input.effects.iter().map(|effect| effect.reach_px).sum()))
     }
 
     /// Draws and reads one still.
@@ -300,7 +296,7 @@ impl Engine {
         self.refresh(request.size[1])?;
         self.last_request = Some(*request);
         let (Some(content), Some(drawn)) = (&self.content, &self.drawn) else { return Err(GpuError::NothingToDraw) };
-        frame_input(content, &drawn.lighting, request, |input| draw(&mut self.renderer, input))
+        frame_input(content, drawn, request, |input| draw(&mut self.renderer, input))
     }
 
     /// Milliseconds of each pass of the last timed frame.
@@ -378,14 +374,10 @@ fn resolve(content: &Content, drawn: Option<&Drawn>, height_px: u32) -> Resolved
 }
 
 /// Calls `draw` with what a frame of the content needs beside objects and materials.
-fn frame_input<T>(
-    content: &Content,
-    lighting: &LightingProvider,
-    request: &Request,
-    draw: impl FnOnce(&FrameInput<'_>) -> T,
-) -> T {
+fn frame_input<T>(content: &Content, drawn: &Drawn, request: &Request, draw: impl FnOnce(&FrameInput<'_>) -> T) -> T {
     let camera = content.camera.turned(request.size, request.turn_deg.to_radians());
-    let lighting = lighting.lighting(&camera);
+    let lighting = drawn.lighting.lighting(&camera);
+    let effects = effects(&content.style, &drawn.lengths, &camera, request.size[1]);
     draw(&FrameInput {
         camera: &camera,
         lighting: &lighting,
@@ -396,5 +388,31 @@ fn frame_input<T>(
         shadows_drawn: false,
         samples: request.samples,
         wide: request.wide,
+        effects: &effects,
     })
+}
+
+/// The post effects of a style in the order of their stages, without those that change nothing.
+fn effects(style: &Style, lengths: &Lengths, camera: &Camera, height_px: u32) -> Vec<Effect> {
+    let pixel_world = camera.pixel_view(height_px) * if camera.orthographic { 1.0 } else { camera.near };
+    let context = EffectContext {
+        screen: &|length| lengths.screen(length, height_px),
+        world: &|length| lengths.world(length),
+        least_pixel_world: f64::from(pixel_world.max(f32::MIN_POSITIVE)),
+    };
+    let listed = style.post_effects.iter().map(|&index| &style.shaders[index]);
+    let mut effects: Vec<Effect> = listed
+        .filter_map(|used| {
+            let effect = effect_index(used.shader)?;
+            let registered = EFFECTS[effect];
+            registered.changes_anything(&used.values).then(|| Effect {
+                effect,
+                features: registered.features_used(&used.values),
+                params: registered.uniform(&used.values, &context),
+                reach_px: registered.reach_px(&used.values, &context),
+            })
+        })
+        .collect();
+    effects.sort_by_key(|effect| effect.effect);
+    effects
 }

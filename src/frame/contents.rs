@@ -118,6 +118,7 @@ impl Needs {
             soft_taps: 0,
             orthographic: false,
             encode: false,
+            geometry: false,
         };
         Needs { kinds: objects.kinds, key }
     }

@@ -1,4 +1,4 @@
-//! A pass over all pixels that reads one texture and one uniform: resolve, and the geometry AOVs.
+//! A pass over all pixels: resolve, the geometry AOVs, and each pass of a post effect.
 
 use crate::gpu::{Gpu, GpuError, Module};
 
@@ -27,7 +27,7 @@ pub fn pipeline(
     module: &Module,
     entries: [&str; 2],
     layouts: &[&wgpu::BindGroupLayout],
-    format: wgpu::TextureFormat,
+    target: impl Into<wgpu::ColorTargetState>,
 ) -> Result<wgpu::RenderPipeline, GpuError> {
     let module = module.compile(gpu, label)?;
     let layouts: Vec<Option<&wgpu::BindGroupLayout>> = layouts.iter().map(|layout| Some(*layout)).collect();
@@ -52,14 +52,14 @@ pub fn pipeline(
             module: &module,
             entry_point: Some(entries[1]),
             compilation_options: Default::default(),
-            targets: &[Some(format.into())],
+            targets: &[Some(target.into())],
         }),
         multiview_mask: None,
         cache: None,
     })
 }
 
-/// Draws it: `groups` in order, each with its dynamic offsets.
+/// Draws it onto a cleared target: `groups` in order, each with its dynamic offsets.
 pub fn draw(
     encoder: &mut wgpu::CommandEncoder,
     label: &'static str,
@@ -68,13 +68,25 @@ pub fn draw(
     target: &wgpu::TextureView,
     times: Option<wgpu::RenderPassTimestampWrites<'_>>,
 ) {
+    draw_onto(encoder, label, pipeline, groups, (target, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT)), times);
+}
+
+/// The same onto a target that is cleared or not.
+pub fn draw_onto(
+    encoder: &mut wgpu::CommandEncoder,
+    label: &'static str,
+    pipeline: &wgpu::RenderPipeline,
+    groups: &[(&wgpu::BindGroup, &[u32])],
+    (target, load): (&wgpu::TextureView, wgpu::LoadOp<wgpu::Color>),
+    times: Option<wgpu::RenderPassTimestampWrites<'_>>,
+) {
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some(label),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
             view: target,
             depth_slice: None,
             resolve_target: None,
-            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
+            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
         })],
         depth_stencil_attachment: None,
         timestamp_writes: times,

@@ -1,4 +1,4 @@
-//! One frame, in order: shadow maps once, then for each sample visibility and shading, then resolve.
+//! One frame, in order: shadow maps once, then for each sample visibility, shading and post effects, then resolve.
 //!
 //! A pass that nothing needs does not exist in that frame, and its pipeline and targets are never made.
 
@@ -9,6 +9,7 @@ mod lights;
 pub mod mesh;
 pub mod objects;
 mod occlusion;
+mod post;
 mod resolve;
 mod shade;
 mod shadow;
@@ -26,6 +27,8 @@ use contents::{Contents, Needs};
 pub use lights::{Light, Lights, MAX_LIGHTS};
 use objects::{DrawList, Material};
 use occlusion::Reach;
+pub use post::{Effect, EffectKey, Finish, effect_module};
+use post::{EffectGroups, Post, PostTargets};
 pub use resolve::resolve_module;
 pub use shade::{Output, ShadeKey, ShaderNeeds, shade_module};
 use shade::{Shade, ShadeInputs, ShadeTarget};
@@ -39,6 +42,7 @@ pub use visibility::VisibilityKey;
 use visibility::{DEPTH_FORMAT, Eye, ID_FORMAT, Visibility, VisibilityPass};
 pub use visibility::{mesh_module, visibility_module};
 
+use crate::effects::EFFECTS;
 use crate::gpu::{Gpu, GpuError, GpuStruct, PassTimer, PassTimes, StructInfo, read_texture};
 use crate::scene::{Camera, LightPlace, Lighting, Sphere};
 use crate::shading::SHADERS;
@@ -57,6 +61,20 @@ const SAMPLES_PER_SUBMISSION: usize = 8;
 /// Where samples add up: 32-bit floats, or 16-bit ones where the adapter cannot blend those.
 fn light_format(gpu: &Gpu) -> wgpu::TextureFormat {
     if gpu.adds_float32() { wgpu::TextureFormat::Rgba32Float } else { wgpu::TextureFormat::Rgba16Float }
+}
+
+/// A target in which samples add up.
+fn adding_light(gpu: &Gpu) -> wgpu::ColorTargetState {
+    let add = wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::One,
+        dst_factor: wgpu::BlendFactor::One,
+        operation: wgpu::BlendOperation::Add,
+    };
+    wgpu::ColorTargetState {
+        format: light_format(gpu),
+        blend: Some(wgpu::BlendState { color: add, alpha: add }),
+        write_mask: wgpu::ColorWrites::ALL,
+    }
 }
 
 /// What one still needs beside objects and materials.
@@ -80,6 +98,8 @@ pub struct FrameInput<'a> {
     pub samples: u32,
     /// 16 bits a channel instead of 8.
     pub wide: bool,
+    /// Post effects, in the order in which they change the picture.
+    pub effects: &'a [Effect],
 }
 
 impl FrameInput<'_> {
@@ -115,6 +135,7 @@ struct Plan {
     map_size: u32,
     shade: ShadeKey,
     seen: VisibilityKey,
+    effects: Vec<EffectKey>,
 }
 
 impl Plan {
@@ -131,11 +152,13 @@ impl Plan {
             shadows: shadowed,
             soft_taps: if shadowed { shadow::soft_taps(samples) } else { 0 },
             orthographic,
-            encode: direct,
+            encode: direct && input.effects.is_empty(),
+            geometry: !input.effects.is_empty(),
             ..needs.key.clone()
         };
         let seen = VisibilityKey { hulls: shade.hulls, orthographic, light: false };
-        Plan { samples, direct, shadows, map_size, shade, seen }
+        let effects = post::keys(input.effects, orthographic, direct);
+        Plan { samples, direct, shadows, map_size, shade, seen, effects }
     }
 
     /// How a light sees the scene. Outlines cast no shadows.
@@ -150,6 +173,7 @@ pub struct Renderer {
     gpu: Arc<Gpu>,
     visibility: Visibility,
     shade: Shade,
+    post: Post,
     resolve: resolve::Resolve,
     aov: aov::Aov,
     targets: Targets,
@@ -168,6 +192,7 @@ impl Renderer {
             gpu,
             visibility,
             shade: Shade::default(),
+            post: Post::default(),
             resolve: resolve::Resolve::default(),
             aov: aov::Aov::default(),
             targets: Targets::default(),
@@ -210,6 +235,7 @@ impl Renderer {
         let visibility = self.visibility.rebuilt(&self.gpu)?;
         let resolve = self.resolve.rebuilt(&self.gpu)?;
         self.shade.rebuild(&self.gpu, &visibility)?;
+        self.post.rebuild(&self.gpu, &visibility)?;
         self.visibility = visibility;
         self.resolve = resolve;
         self.aov = aov::Aov::default();
@@ -222,6 +248,9 @@ impl Renderer {
             self.visibility.prepare(gpu, needs.kinds, key)?;
         }
         self.shade.prepare(gpu, &self.visibility, &plan.shade)?;
+        for key in &plan.effects {
+            self.post.prepare(gpu, &self.visibility, key)?;
+        }
         if !plan.direct {
             self.resolve.prepare(gpu, wide)?;
         }
@@ -247,7 +276,9 @@ impl Renderer {
         let needs = self.contents.needs();
         let plan = Plan::new(&gpu, &needs, input);
         self.build(&needs, &plan, input.wide)?;
-        self.targets.fit(&gpu, input.drawn_size(), if input.wide { OUTPUT_16 } else { OUTPUT_8 }, !plan.direct);
+        let output_format = if input.wide { OUTPUT_16 } else { OUTPUT_8 };
+        self.targets.fit(&gpu, input.drawn_size(), output_format, !plan.direct, plan.effects.len());
+        let effect_bytes = self.post.fit(&gpu, input.drawn_size(), input.effects);
         self.fit_shadows(&plan);
 
         // Uniforms and bindings: a view for each sample, and the view of each light that casts shadows.
@@ -275,6 +306,19 @@ impl Renderer {
             materials: &self.contents.params,
         };
         let Some((shade_group, background)) = self.shade.bind(&gpu, &plan.shade, &inputs)? else { return Ok(()) };
+        let finished = light.as_ref().unwrap_or(&output);
+        let shaded = self.targets.shaded_views();
+        let post = shaded.as_ref().map(|(geometry, colors)| PostTargets {
+            ids: &ids,
+            geometry,
+            colors,
+            last: finished,
+            output: &background,
+        });
+        let effect_groups: Option<EffectGroups> = match &post {
+            Some(targets) => self.post.bind(&gpu, input.effects, &plan.effects, targets)?,
+            None => None,
+        };
         let mut timer = if timed { PassTimer::new(&gpu) } else { None };
 
         // The frame, in submissions of a few samples each, so that progress can be told.
@@ -285,8 +329,10 @@ impl Renderer {
                 VisibilityPass { name: "shadow", view: 0, key: Plan::lit(shadow), ids, depth, seen: &shadow.light };
             self.visibility.draw(&mut encoder, lit_scene, objects, &pass, &mut timer);
         }
-        let clear = if plan.direct { clear_value(input.background) } else { wgpu::Color::TRANSPARENT };
-        let target = ShadeTarget { light: light.as_ref().unwrap_or(&output), depth: &depth, clear };
+        let clear = if plan.shade.encode { clear_value(input.background) } else { wgpu::Color::TRANSPARENT };
+        let shaded_light = post.as_ref().and_then(|post| post.colors.first()).unwrap_or(finished);
+        let geometry = post.as_ref().map(|post| post.geometry);
+        let target = ShadeTarget { light: shaded_light, geometry, depth: &depth, clear };
         for index in 0..samples as usize {
             let pass = VisibilityPass {
                 name: "visibility",
@@ -298,6 +344,9 @@ impl Renderer {
             };
             self.visibility.draw(&mut encoder, &scene, objects, &pass, &mut timer);
             self.shade.draw(&mut encoder, &plan.shade, &scene, index, &shade_group, &target, &mut timer);
+            if let (Some(targets), Some(groups)) = (&post, &effect_groups) {
+                self.post.draw(&mut encoder, &plan.effects, &scene, index, groups, targets, &mut timer);
+            }
             if (index + 1) % SAMPLES_PER_SUBMISSION == 0 && index + 1 < samples as usize {
                 gpu.queue.submit([std::mem::replace(&mut encoder, frame_encoder(&gpu)).finish()]);
                 gpu.wait()?;
@@ -319,6 +368,7 @@ impl Renderer {
             None => Vec::new(),
         };
         self.targets.note_shadow_bytes(self.maps.as_ref().map_or(0, ShadowMaps::bytes));
+        self.targets.note_effect_bytes(effect_bytes);
         Ok(())
     }
 
@@ -393,11 +443,6 @@ impl Renderer {
         &self.last_times
     }
 
-    /// How far what a pixel sees changes others, in pixels: nothing does yet but within its own.
-    pub fn reach_px(&self) -> u32 {
-        0
-    }
-
     /// Triangles of meshes that are drawn.
     pub fn num_triangles(&self) -> u64 {
         self.contents.objects.meshes.num_triangles()
@@ -459,5 +504,6 @@ pub fn gpu_structs() -> Vec<StructInfo> {
         all.push(shader.material_info());
         all.extend(shader.resource_infos());
     }
+    all.extend(EFFECTS.iter().map(|effect| effect.params_info()));
     all
 }

@@ -23,8 +23,8 @@ gpu_struct! {
         pub color: [u32; 2],
         /// Index into the materials.
         pub material: u32,
-        /// Padding.
-        pub _pad0: u32,
+        /// Its group, 16 bits: see [`crate::effects::outline::group_word`].
+        pub group: u32,
     }
 }
 
@@ -40,7 +40,7 @@ gpu_struct! {
         pub b_world: [f32; 3],
         /// Index into the materials.
         pub material: u32,
-        /// Linear RGB of the half at `a`, as half floats.
+        /// Linear RGB of the half at `a`, as half floats, and above them the group of the atom there.
         pub color_a: [u32; 2],
         /// The same at `b`.
         pub color_b: [u32; 2],
@@ -70,6 +70,12 @@ gpu_struct! {
 pub fn pack_linear(color: Vec3) -> [u32; 2] {
     let [r, g, b] = color.to_array().map(|channel| u32::from(half::f16::from_f32(channel).to_bits()));
     [r | g << 16, b]
+}
+
+/// The same with a group of 16 bits in the half float that is left.
+pub fn pack_linear_and_group(color: Vec3, group: u32) -> [u32; 2] {
+    let [rg, b] = pack_linear(color);
+    [rg, b | group << 16]
 }
 
 /// Everything that a style draws of a scene.

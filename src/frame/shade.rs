@@ -5,6 +5,7 @@ use std::collections::btree_map::Entry;
 use std::fmt::Write as _;
 
 use super::lights::Lights;
+use super::post;
 use super::shadow::{ShadowMaps, Shadows};
 use super::visibility::{DEPTH_FORMAT, SceneBindings, Visibility};
 use crate::gpu::{Bound, Gpu, GpuError, KeptBindGroup, KeptBuffer, Module, PassTimer};
@@ -53,6 +54,8 @@ pub struct ShadeKey {
     pub orthographic: bool,
     /// Straight to 8-bit picture values, instead of adding up linear light.
     pub encode: bool,
+    /// Light that is not weighted yet and the surface beside it, for post effects.
+    pub geometry: bool,
 }
 
 /// What a style needs of one shader.
@@ -94,6 +97,8 @@ pub struct ShadeInputs<'a> {
 pub struct ShadeTarget<'a> {
     /// Light, or picture values.
     pub light: &'a wgpu::TextureView,
+    /// Surfaces, for post effects.
+    pub geometry: Option<&'a wgpu::TextureView>,
     /// Depths of the visibility pass.
     pub depth: &'a wgpu::TextureView,
     /// What stays where nothing is seen.
@@ -178,19 +183,13 @@ impl Shade {
             bind_group_layouts: &[Some(&visibility.layout), Some(&layout)],
             immediate_size: 0,
         });
-        let target = if key.encode {
-            super::OUTPUT_8.into()
+        let (entry_point, targets) = if key.geometry {
+            let formats = [post::COLOR_FORMAT, post::GEOMETRY_FORMAT];
+            ("shade_geometry_fragment", formats.map(|format| Some(format.into())).to_vec())
+        } else if key.encode {
+            ("shade_fragment", vec![Some(super::OUTPUT_8.into())])
         } else {
-            let add = wgpu::BlendComponent {
-                src_factor: wgpu::BlendFactor::One,
-                dst_factor: wgpu::BlendFactor::One,
-                operation: wgpu::BlendOperation::Add,
-            };
-            wgpu::ColorTargetState {
-                format: super::light_format(gpu),
-                blend: Some(wgpu::BlendState { color: add, alpha: add }),
-                write_mask: wgpu::ColorWrites::ALL,
-            }
+            ("shade_fragment", vec![Some(super::adding_light(gpu))])
         };
         let pipeline = gpu.render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("shade"),
@@ -213,9 +212,9 @@ impl Shade {
             multisample: Default::default(),
             fragment: Some(wgpu::FragmentState {
                 module: &module,
-                entry_point: Some("shade_fragment"),
+                entry_point: Some(entry_point),
                 compilation_options: Default::default(),
-                targets: &[Some(target)],
+                targets: &targets,
             }),
             multiview_mask: None,
             cache: None,
@@ -304,7 +303,8 @@ impl Shade {
         Ok(Some((self.group.get(gpu, "shade", &pipeline.layout, bound), output)))
     }
 
-    /// Shades the pixels of view `view_index` that see something; the first view clears the target to `clear`.
+    /// Shades the pixels of view `view_index` that see something. The first view clears the target to `clear`; where post
+    /// effects follow, every view does.
     #[allow(clippy::too_many_arguments)]
     pub fn draw(
         &self,
@@ -317,15 +317,22 @@ impl Shade {
         timer: &mut Option<PassTimer>,
     ) {
         let Some(pipeline) = self.pipelines.get(key) else { return };
-        let load = if view_index == 0 { wgpu::LoadOp::Clear(to.clear) } else { wgpu::LoadOp::Load };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("shade"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: to.light,
+        let first = view_index == 0 || key.geometry;
+        let load = if first { wgpu::LoadOp::Clear(to.clear) } else { wgpu::LoadOp::Load };
+        let attachment = |view, load| {
+            Some(wgpu::RenderPassColorAttachment {
+                view,
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-            })],
+            })
+        };
+        let mut attachments = vec![attachment(to.light, load)];
+        let nothing = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
+        attachments.extend(to.geometry.map(|geometry| attachment(geometry, nothing)));
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("shade"),
+            color_attachments: &attachments,
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: to.depth,
                 depth_ops: None,
@@ -346,6 +353,7 @@ impl Shade {
 pub fn shade_module(key: &ShadeKey) -> Module {
     let mut module = Module::new(&[
         wgsl!("lib/view.wgsl"),
+        wgsl!("lib/ids.wgsl"),
         wgsl!("lib/objects.wgsl"),
         wgsl!("lib/intersect.wgsl"),
         if key.meshes { wgsl!("lib/mesh.wgsl") } else { wgsl!("lib/mesh_none.wgsl") },
@@ -413,6 +421,10 @@ pub fn shade_module(key: &ShadeKey) -> Module {
     bindings.push_str(&material_function(key));
     module.add_generated("shade bindings", bindings);
     module.add(wgsl!("objects/shade.wgsl"));
+    if key.geometry {
+        module.add(wgsl!("lib/geometry.wgsl"));
+        module.add(wgsl!("objects/shade_geometry.wgsl"));
+    }
     module
 }
 

@@ -1,5 +1,6 @@
 //! The pictures that passes draw to, kept from frame to frame while size and need stay.
 
+use super::post::{COLOR_FORMAT, GEOMETRY_FORMAT};
 use super::{DEPTH_FORMAT, ID_FORMAT, light_format};
 use crate::gpu::{Gpu, GpuError};
 
@@ -7,17 +8,31 @@ use crate::gpu::{Gpu, GpuError};
 pub type TargetBytes = Vec<(&'static str, u64)>;
 
 /// A texture with the view that bind groups know it by.
-struct Target {
+pub(super) struct Target {
     texture: wgpu::Texture,
-    view: wgpu::TextureView,
+    /// To draw to and to read.
+    pub view: wgpu::TextureView,
 }
 
 impl Target {
-    fn new(gpu: &Gpu, label: &'static str, size: [u32; 2], format: wgpu::TextureFormat) -> Target {
+    pub fn new(gpu: &Gpu, label: &'static str, size: [u32; 2], format: wgpu::TextureFormat) -> Target {
         let texture = gpu.target(label, size, 1, format);
         let view = texture.create_view(&Default::default());
         Target { texture, view }
     }
+
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> u64 {
+        let block = self.texture.format().block_copy_size(None).unwrap_or(4);
+        u64::from(self.texture.width()) * u64::from(self.texture.height()) * u64::from(block)
+    }
+}
+
+/// What post effects read: the light of one sample, and its surfaces.
+struct Shaded {
+    geometry: Target,
+    /// Two only where one effect's picture is the next one's.
+    colors: Vec<Target>,
 }
 
 struct Set {
@@ -26,6 +41,7 @@ struct Set {
     depth: Target,
     output: Target,
     light: Option<Target>,
+    shaded: Option<Shaded>,
 }
 
 /// The targets of the last frame.
@@ -33,21 +49,32 @@ struct Set {
 pub struct Targets {
     set: Option<Set>,
     shadow_bytes: u64,
+    effect_bytes: u64,
 }
 
 impl Targets {
-    /// Makes the targets fit; what fits already stays. `light` asks for the target in which samples add up.
-    pub fn fit(&mut self, gpu: &Gpu, size: [u32; 2], output: wgpu::TextureFormat, light: bool) {
+    /// Makes the targets fit; what fits already stays. `light` asks for the target in which samples add up, `effects` for
+    /// what so many post effects read.
+    pub fn fit(&mut self, gpu: &Gpu, size: [u32; 2], output: wgpu::TextureFormat, light: bool, effects: usize) {
         let former = self.set.take().filter(|set| set.size == size);
         let make = |label, format| Target::new(gpu, label, size, format);
-        let (ids, depth, former_output, former_light) = match former {
-            Some(set) => (set.ids, set.depth, Some(set.output), set.light),
-            None => (make("ids", ID_FORMAT), make("depth", DEPTH_FORMAT), None, None),
+        let (ids, depth, former_output, former_light, former_shaded) = match former {
+            Some(set) => (set.ids, set.depth, Some(set.output), set.light, set.shaded),
+            None => (make("ids", ID_FORMAT), make("depth", DEPTH_FORMAT), None, None, None),
         };
         let output =
             former_output.filter(|target| target.texture.format() == output).unwrap_or_else(|| make("output", output));
         let light = light.then(|| former_light.unwrap_or_else(|| make("light", light_format(gpu))));
-        self.set = Some(Set { size, ids, depth, output, light });
+        let shaded = (effects > 0).then(|| {
+            let mut shaded = former_shaded
+                .unwrap_or_else(|| Shaded { geometry: make("geometry", GEOMETRY_FORMAT), colors: Vec::new() });
+            shaded.colors.truncate(effects);
+            while shaded.colors.len() < effects.min(2) {
+                shaded.colors.push(make("color", COLOR_FORMAT));
+            }
+            shaded
+        });
+        self.set = Some(Set { size, ids, depth, output, light, shaded });
     }
 
     fn set(&self) -> Result<&Set, GpuError> {
@@ -66,6 +93,12 @@ impl Targets {
     /// Where samples add up, if this frame adds any.
     pub fn light_view(&self) -> Option<wgpu::TextureView> {
         Some(self.set.as_ref()?.light.as_ref()?.view.clone())
+    }
+
+    /// The surfaces of a sample and the pictures that effects change in turn, if this frame has effects.
+    pub fn shaded_views(&self) -> Option<(wgpu::TextureView, Vec<wgpu::TextureView>)> {
+        let shaded = self.set.as_ref()?.shaded.as_ref()?;
+        Some((shaded.geometry.view.clone(), shaded.colors.iter().map(|color| color.view.clone()).collect()))
     }
 
     /// The picture.
@@ -98,15 +131,21 @@ impl Targets {
         self.shadow_bytes = bytes;
     }
 
+    /// Notes what the textures of the frame's post effects take.
+    pub fn note_effect_bytes(&mut self, bytes: u64) {
+        self.effect_bytes = bytes;
+    }
+
     /// Bytes of each target.
     pub fn bytes(&self) -> TargetBytes {
         let Some(set) = &self.set else { return Vec::new() };
-        let bytes = |target: &Target| {
-            let block = target.texture.format().block_copy_size(None).unwrap_or(4);
-            u64::from(set.size[0]) * u64::from(set.size[1]) * u64::from(block)
-        };
-        let mut all = vec![("ids", bytes(&set.ids)), ("depth", bytes(&set.depth)), ("output", bytes(&set.output))];
-        all.extend(set.light.as_ref().map(|light| ("light", bytes(light))));
+        let mut all = vec![("ids", set.ids.bytes()), ("depth", set.depth.bytes()), ("output", set.output.bytes())];
+        all.extend(set.light.as_ref().map(|light| ("light", light.bytes())));
+        if let Some(shaded) = &set.shaded {
+            all.push(("geometry", shaded.geometry.bytes()));
+            all.push(("color", shaded.colors.iter().map(Target::bytes).sum()));
+            all.push(("effects", self.effect_bytes));
+        }
         if self.shadow_bytes > 0 {
             all.push(("shadow_maps", self.shadow_bytes));
         }

@@ -89,6 +89,25 @@ fn an_outline_costs_one_write_once_there_are_outlines() {
 }
 
 #[test]
+fn an_effect_costs_its_passes_and_then_one_write() {
+    let Some(mut engine) = warm() else { return };
+    let lines = |properties: &str| {
+        let shaders =
+            format!(r#"{SHADERS}, {{ "name": "l", "shader": "outlinePost", "properties": {{ {properties} }} }}"#);
+        style(CAMERA, &format!(r#"{MAPPING}, "post_effects": ["l"]"#), &shaders, LIGHTS)
+    };
+    let off = r#""silhouette_width": 0, "boundary_width": 0"#;
+    assert_eq!(cost_of(&mut engine, &lines(off)), Counters::default(), "no line is drawn");
+    let first = cost_of(&mut engine, &lines(""));
+    // Shading once more, with surfaces; five passes; surfaces, light, and a texture for each pass but the last.
+    assert_eq!((first.pipelines_built, first.textures_created, first.buffers_created), (6, 6, 1), "{first:?}");
+    assert_eq!(cost(&mut engine), Counters::default(), "a frame in which nothing changed");
+    assert_eq!(cost_of(&mut engine, &lines(r#""depth_step": "0.7r""#)), one_write(4));
+    let back = cost_of(&mut engine, &style(CAMERA, MAPPING, SHADERS, LIGHTS));
+    assert_eq!(Counters { bind_groups_created: 0, ..back }, Counters::default(), "{back:?}");
+}
+
+#[test]
 fn a_scheme_of_colours_costs_the_objects() {
     let Some(mut engine) = warm() else { return };
     let shaders = SHADERS.replace("\"steps\": 3", "\"steps\": 3, \"base_color\": \"chain\"");

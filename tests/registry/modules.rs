@@ -6,8 +6,10 @@ use std::sync::OnceLock;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{AddressSpace, Handle, Type, TypeInner};
+use restyle::effects::EFFECTS;
 use restyle::frame::{
-    ShadeKey, ShaderNeeds, VisibilityKey, aov_module, mesh_module, resolve_module, shade_module, visibility_module,
+    EffectKey, Finish, ShadeKey, ShaderNeeds, VisibilityKey, aov_module, effect_module, mesh_module, resolve_module,
+    shade_module, visibility_module,
 };
 use restyle::gpu::Module;
 use restyle::shading::SHADERS;
@@ -65,6 +67,9 @@ pub fn survey() -> &'static Survey {
             }
         }
         survey.read("resolve", &resolve_module());
+        for key in effect_keys() {
+            survey.read(&format!("effect, {key:?}"), &effect_module(&key));
+        }
         for key in shade_keys() {
             survey.read(&format!("shade, {key:?}"), &shade_module(&key));
         }
@@ -143,7 +148,7 @@ fn collect(parsed: &naga::Module, ty: Handle<Type>, into: &mut BTreeSet<Handle<T
 }
 
 /// How many yes-or-no questions a [`ShadeKey`] answers, beside its list of shaders.
-const NUM_SWITCHES: u32 = 15;
+const NUM_SWITCHES: u32 = 16;
 
 /// Answers, one a bit, of which at most one differs from the rest.
 fn covering_switches() -> impl Iterator<Item = u32> {
@@ -162,6 +167,20 @@ fn shade_keys() -> Vec<ShadeKey> {
     }
     for (index, shader) in SHADERS.iter().enumerate() {
         keys.extend((0..shader.features().len()).map(|bit| shade_key(1 << index, 0b11, 1 << bit)));
+    }
+    keys
+}
+
+/// Keys of every post effect: each set of its features with each camera and each end.
+fn effect_keys() -> Vec<EffectKey> {
+    let mut keys = Vec::new();
+    for (effect, registered) in EFFECTS.iter().enumerate() {
+        for features in 0..1 << registered.features().len() {
+            for orthographic in [false, true] {
+                let ends = [Finish::Next, Finish::Add, Finish::Encode];
+                keys.extend(ends.map(|finish| EffectKey { effect, features, orthographic, finish }));
+            }
+        }
     }
     keys
 }
@@ -185,6 +204,7 @@ fn shade_key(shaders: u32, switches: u32, features: u32) -> ShadeKey {
         shadows: on(7),
         encode: on(8),
         soft_taps: if on(12) { 16 } else { 0 },
+        geometry: on(15),
         orthographic: on(11),
     }
 }

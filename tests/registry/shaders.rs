@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use restyle::config::param::check_table;
 use restyle::config::{Catalog, SECTIONS};
+use restyle::effects::{EFFECTS, PassTarget};
 use restyle::engine;
 use restyle::shading::{DEFAULT_SHADER, SHADERS, shader_index};
 
@@ -51,6 +52,29 @@ fn every_shader_has_a_twin() {
 }
 
 #[test]
+fn every_effect_has_its_files_its_twin_and_an_end() {
+    let main = text("tests/twins/main.rs");
+    for effect in EFFECTS {
+        let (name, file) = (effect.name(), effect.file());
+        assert!(effect.doc().ends_with('.'), "{name}: its doc is not a sentence");
+        let own = format!("effects/{file}.wgsl");
+        assert_eq!(effect.wgsl().last().map(|file| file.path), Some(own.as_str()), "{name}: its own file comes last");
+        assert_eq!(effect.params_info().path, own, "{name}: its parameters are declared in its own file");
+        assert!(at(&format!("src/effects/{file}.rs")).exists(), "src/effects/{file}.rs is missing");
+        assert!(main.contains(&format!("mod {file};")), "tests/twins/main.rs: {name} has no twin `mod {file};`");
+        let code = text(&format!("shaders/{own}"));
+        for pass in effect.passes() {
+            assert!(code.contains(&format!("fn {}(", pass.entry)), "shaders/{own}: there is no `fn {}`", pass.entry);
+        }
+        for feature in effect.features() {
+            assert!(code.contains(feature), "shaders/{own}: nothing reads {feature}");
+        }
+        let ends: Vec<bool> = effect.passes().iter().map(|pass| pass.target == PassTarget::Picture).collect();
+        assert!(ends.iter().rev().skip(1).all(|end| !end) && ends.last() == Some(&true), "{name}: {ends:?}");
+    }
+}
+
+#[test]
 fn every_feature_is_named_once_and_read_by_its_shader() {
     let mut seen = BTreeSet::new();
     for shader in SHADERS {
@@ -71,6 +95,7 @@ fn every_feature_is_named_once_and_read_by_its_shader() {
 fn every_table_of_parameters_is_sound() {
     let mut tables: Vec<_> = SECTIONS.iter().map(|section| (section.key, section.params)).collect();
     tables.extend(SHADERS.iter().map(|shader| (shader.name(), shader.params())));
+    tables.extend(EFFECTS.iter().map(|effect| (effect.name(), effect.params())));
     let complaints = tables
         .iter()
         .flat_map(|(name, params)| check_table(params).into_iter().map(move |wrong| format!("{name}: {wrong}")));
@@ -81,6 +106,7 @@ fn every_table_of_parameters_is_sound() {
 fn every_drawn_parameter_has_a_few_examples() {
     let tables = SECTIONS.iter().map(|section| (section.key, section.params));
     let tables = tables.chain(SHADERS.iter().map(|shader| (shader.name(), shader.params())));
+    let tables = tables.chain(EFFECTS.iter().map(|effect| (effect.name(), effect.params())));
     let complaints = tables.flat_map(|(group, params)| {
         let bare = params.iter().filter(|param| param.drawn && !(2..=4).contains(&param.examples.len()));
         bare.map(move |param| format!("{group}: {:?} has {} examples, not 2 to 4", param.name, param.examples.len()))

@@ -8,6 +8,8 @@ mod furnace;
 mod gpu;
 mod impostors;
 mod meshes;
+mod outline;
+mod outline_truth;
 mod outlines;
 mod output;
 mod sampling;

@@ -217,6 +217,62 @@ const SETTINGS: &[Setting] = &[
         said: "Methane, all in one colour.",
         style: r##"{ "camera": { "zoom": 1.4 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#a33b2e" } }] }"##,
     },
+    Setting {
+        group: "outlinePost",
+        param: "depth_step",
+        scene: Molecule::Shipped("nanotube"),
+        said: "A nanotube.",
+        style: r##"{ "geometry": { "scale": 0.9 }, "shaders": [{ "name": "shown", "properties": { "silhouette_width": "6pt" } }] }"##,
+    },
+    Setting {
+        group: "outlinePost",
+        param: "boundary",
+        scene: Molecule::Shipped("caffeine"),
+        said: "Caffeine, one residue of one chain, with a `boundary_width` of `6pt`.",
+        style: r##"{ "geometry": { "scale": 0.6 }, "shaders": [{ "name": "shown", "properties": { "boundary_width": "6pt", "silhouette_width": "6pt" } }] }"##,
+    },
+    Setting {
+        group: "outlinePost",
+        param: "boundary_width",
+        scene: Molecule::Shipped("caffeine"),
+        said: "Caffeine, with `boundary` `object` and silhouettes of `6pt`.",
+        style: r##"{ "geometry": { "scale": 0.6 }, "shaders": [{ "name": "shown", "properties": { "boundary": "object", "silhouette_width": "6pt" } }] }"##,
+    },
+    Setting {
+        group: "outlinePost",
+        param: "boundary_color",
+        scene: Molecule::Shipped("caffeine"),
+        said: "Caffeine, with `boundary` `object` and lines of `8pt`.",
+        style: r##"{ "geometry": { "scale": 0.6 }, "shaders": [{ "name": "shown", "properties": { "boundary": "object", "boundary_width": "8pt", "silhouette_width": 0 } }] }"##,
+    },
+    Setting {
+        group: "outlinePost",
+        param: "crease_width",
+        scene: Molecule::Shipped("caffeine"),
+        said: "Caffeine, with silhouettes of `6pt`.",
+        style: r##"{ "geometry": { "scale": 0.6 }, "shaders": [{ "name": "shown", "properties": { "silhouette_width": "6pt" } }] }"##,
+    },
+    Setting {
+        group: "outlinePost",
+        param: "crease_color",
+        scene: Molecule::Shipped("caffeine"),
+        said: "Caffeine, with creases of `8pt`.",
+        style: r##"{ "geometry": { "scale": 0.6 }, "shaders": [{ "name": "shown", "properties": { "crease_width": "8pt" } }] }"##,
+    },
+    Setting {
+        group: "outlinePost",
+        param: "crease_angle",
+        scene: Molecule::Shipped("caffeine"),
+        said: "Caffeine, with creases of `6pt`.",
+        style: r##"{ "geometry": { "scale": 0.6 }, "shaders": [{ "name": "shown", "properties": { "crease_width": "6pt" } }] }"##,
+    },
+    Setting {
+        group: "outlinePost",
+        param: "",
+        scene: Molecule::Shipped("caffeine"),
+        said: "Caffeine, with a `silhouette_width` of `8pt` where it is not the one that changes.",
+        style: r##"{ "geometry": { "scale": 0.6 }, "shaders": [{ "name": "shown", "properties": { "silhouette_width": "8pt" } }] }"##,
+    },
     // Any shader, also one that this table does not know yet.
     Setting {
         group: "",
@@ -241,27 +297,37 @@ fn base() -> Value {
 /// Every strip of the manual, in its order.
 pub fn strips(catalog: &Catalog<'_>) -> Vec<Strip> {
     let sections = SECTIONS.iter().map(|section| (section.key, section.params));
-    let shaders = catalog.shaders.iter().filter(|entry| entry.drawn && entry.role == Role::Object);
+    let shaders = catalog.shaders.iter().filter(|entry| entry.drawn);
     let groups = sections.chain(shaders.map(|entry| (entry.name, entry.params)));
     let all = groups.flat_map(|(group, params)| params.iter().map(move |param| (group, param)));
+    let is_effect = |group: &str| catalog.get(group).is_some_and(|entry| entry.drawn && entry.role == Role::PostEffect);
     let seen = all
         .filter(|(group, param)| param.drawn && !param.examples.is_empty() && !UNSEEN.contains(&(group, param.name)));
-    seen.map(|(group, param)| strip(group, param)).collect()
+    seen.map(|(group, param)| strip(group, is_effect(group), param)).collect()
 }
 
-fn strip(group: &'static str, param: &'static Param) -> Strip {
+fn strip(group: &'static str, is_effect: bool, param: &'static Param) -> Strip {
     let fits = |setting: &&Setting| [group, ""].contains(&setting.group) && [param.name, ""].contains(&setting.param);
     let setting = SETTINGS.iter().find(fits).expect("the last fits all");
-    let styles = param.examples.iter().map(|example| style(setting, group, param, example).to_string()).collect();
+    let styles =
+        param.examples.iter().map(|example| style(setting, group, is_effect, param, example).to_string()).collect();
     Strip { group, param: param.name, scene: setting.scene, said: setting.said, styles }
 }
 
-fn style(setting: &Setting, group: &str, param: &Param, example: &str) -> Value {
+fn style(setting: &Setting, group: &str, is_effect: bool, param: &Param, example: &str) -> Value {
     let read = |text: &str| serde_json::from_str::<Value>(text).expect("a test draws every setting and example");
     let mut style = base();
     merge(&mut style, read(setting.style));
     let of_section = SECTIONS.iter().find(|section| section.key == group);
-    style["shaders"][0]["shader"] = of_section.map_or(group, |_| BASIC).into();
+    if is_effect {
+        // The effect's own properties stand where a shader's would.
+        style["shaders"][0]["shader"] = group.into();
+        style["mapping"] = json!({ "*": "flat", "post_effects": ["shown"] });
+        let shown = style["shaders"][0].clone();
+        style["shaders"] = json!([shown, { "name": "flat", "shader": "unlit" }]);
+    } else {
+        style["shaders"][0]["shader"] = of_section.map_or(group, |_| BASIC).into();
+    }
     let place = match of_section {
         Some(section) if section.is_list => &mut style[group][0],
         Some(_) => &mut style[group],

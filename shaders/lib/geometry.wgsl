@@ -1,0 +1,47 @@
+// The surface of a pixel as the shading pass leaves it for post effects: one texel of four words.
+
+struct Geometry {
+    // -z_view.
+    depth: f32,
+    // Unit, in view space, turned to the viewer.
+    normal_view: vec3<f32>,
+    // Curvature times the size of a pixel there: 1 over the radius in pixels, 0 on flat surfaces.
+    bend_px: f32,
+    // Which group of objects (16 bits).
+    group: u32,
+    id: u32,
+}
+
+// Scene units of a pixel at a depth.
+fn pixel_world(view: View, depth: f32) -> f32 {
+    return view.pixel_view * select(depth, 1.0, ORTHOGRAPHIC);
+}
+
+// A unit vector as a point of an octahedron that is folded open, 16 bits a coordinate.
+fn pack_unit(v: vec3<f32>) -> u32 {
+    let flat = v.xy / (abs(v.x) + abs(v.y) + abs(v.z));
+    let signs = select(vec2<f32>(-1.0), vec2<f32>(1.0), flat >= vec2<f32>(0.0));
+    return pack2x16snorm(select(flat, (1.0 - abs(flat.yx)) * signs, v.z < 0.0));
+}
+
+fn unpack_unit(word: u32) -> vec3<f32> {
+    let flat = unpack2x16snorm(word);
+    let z = 1.0 - abs(flat.x) - abs(flat.y);
+    let signs = select(vec2<f32>(-1.0), vec2<f32>(1.0), flat >= vec2<f32>(0.0));
+    return normalize(vec3<f32>(select(flat, (1.0 - abs(flat.yx)) * signs, z < 0.0), z));
+}
+
+fn pack_geometry(g: Geometry) -> vec4<u32> {
+    return vec4<u32>(
+        bitcast<u32>(g.depth),
+        pack_unit(g.normal_view),
+        (pack2x16float(vec2<f32>(min(g.bend_px, 6e4), 0.0)) & 0xffffu) | (g.group << 16u),
+        g.id,
+    );
+}
+
+fn unpack_geometry(texel: vec4<u32>) -> Geometry {
+    return Geometry(
+        bitcast<f32>(texel.x), unpack_unit(texel.y), unpack2x16float(texel.z).x, texel.z >> 16u, texel.w,
+    );
+}

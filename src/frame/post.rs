@@ -1,0 +1,303 @@
+//! Post effects of a frame: after each sample is shaded, one after the other changes its picture, and the last adds it up.
+
+use std::collections::BTreeMap;
+
+use super::fullscreen;
+use super::targets::Target;
+use super::visibility::{SceneBindings, Visibility};
+use crate::effects::{EFFECTS, EffectPass, PassTarget, PostEffect};
+use crate::gpu::{Bound, Gpu, GpuError, KeptBindGroup, KeptBuffer, Module, PassTimer};
+use crate::wgsl;
+
+/// The light of one sample, premultiplied.
+pub const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+/// The surface of one sample: see `shaders/lib/geometry.wgsl`.
+pub const GEOMETRY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
+
+/// A post effect as a frame uses it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Effect {
+    /// Its place in the registry.
+    pub effect: usize,
+    /// The features that it uses, one bit each.
+    pub features: u32,
+    /// Its parameters as its WGSL reads them.
+    pub params: Vec<u8>,
+    /// How far what a pixel sees changes others, in pixels.
+    pub reach_px: u32,
+}
+
+/// Where the picture goes that an effect leaves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Finish {
+    /// To the next effect.
+    Next,
+    /// To the other samples.
+    Add,
+    /// To the picture, as values of 8 bits.
+    Encode,
+}
+
+/// What the pipelines of an effect are built for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct EffectKey {
+    /// Its place in the registry.
+    pub effect: usize,
+    /// The features that it uses, one bit each.
+    pub features: u32,
+    /// Whether the camera is orthographic.
+    pub orthographic: bool,
+    /// Where its picture goes.
+    pub finish: Finish,
+}
+
+/// The keys of a chain of effects.
+pub fn keys(effects: &[Effect], orthographic: bool, encode: bool) -> Vec<EffectKey> {
+    let last = effects.len().saturating_sub(1);
+    let finish = |index: usize| match (index == last, encode) {
+        (false, _) => Finish::Next,
+        (true, false) => Finish::Add,
+        (true, true) => Finish::Encode,
+    };
+    effects
+        .iter()
+        .enumerate()
+        .map(|(index, effect)| EffectKey {
+            effect: effect.effect,
+            features: effect.features,
+            orthographic,
+            finish: finish(index),
+        })
+        .collect()
+}
+
+/// First binding of the textures that an effect's own passes drew.
+const FIRST_OWN_BINDING: u32 = 5;
+
+/// A pipeline for each pass, with the layout of what it reads.
+type Pipelines = Vec<(wgpu::BindGroupLayout, wgpu::RenderPipeline)>;
+
+/// What one effect of the chain keeps from frame to frame.
+struct Slot {
+    /// The effect and picture size that its textures are for.
+    fits: Option<(usize, [u32; 2])>,
+    params: KeptBuffer,
+    own: Vec<Target>,
+    groups: Vec<KeptBindGroup>,
+}
+
+/// What the passes of a frame's effects bind: for each effect, a group for each pass.
+pub type EffectGroups = Vec<Vec<wgpu::BindGroup>>;
+
+/// What all effects of a frame read and draw to.
+pub struct PostTargets<'a> {
+    /// Ids of the visibility pass.
+    pub ids: &'a wgpu::TextureView,
+    /// The surfaces.
+    pub geometry: &'a wgpu::TextureView,
+    /// The picture that was shaded, and another one where there are more effects than one.
+    pub colors: &'a [wgpu::TextureView],
+    /// Where the last effect draws.
+    pub last: &'a wgpu::TextureView,
+    /// The background, for the last effect.
+    pub output: &'a wgpu::Buffer,
+}
+
+/// Pipelines and textures of post effects.
+#[derive(Default)]
+pub struct Post {
+    pipelines: BTreeMap<EffectKey, Pipelines>,
+    slots: Vec<Slot>,
+}
+
+impl Post {
+    /// Builds the pipelines of an effect, unless they are there.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] where a shader does not compile.
+    pub fn prepare(&mut self, gpu: &Gpu, visibility: &Visibility, key: &EffectKey) -> Result<(), GpuError> {
+        if !self.pipelines.contains_key(key) {
+            self.pipelines.insert(*key, build(gpu, visibility, key)?);
+        }
+        Ok(())
+    }
+
+    /// Pipelines that are there built anew, from the shaders as they are now.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] where a shader does not compile; nothing has changed then.
+    pub fn rebuild(&mut self, gpu: &Gpu, visibility: &Visibility) -> Result<(), GpuError> {
+        let fresh: Result<BTreeMap<_, _>, GpuError> =
+            self.pipelines.keys().map(|key| Ok((*key, build(gpu, visibility, key)?))).collect();
+        self.pipelines = fresh?;
+        Ok(())
+    }
+
+    /// Makes the effects' own textures fit; returns their bytes.
+    pub fn fit(&mut self, gpu: &Gpu, size: [u32; 2], effects: &[Effect]) -> u64 {
+        self.slots.resize_with(effects.len(), || Slot {
+            fits: None,
+            params: KeptBuffer::uniform("effect"),
+            own: Vec::new(),
+            groups: Vec::new(),
+        });
+        for (slot, effect) in self.slots.iter_mut().zip(effects) {
+            if slot.fits == Some((effect.effect, size)) {
+                continue;
+            }
+            let passes = EFFECTS[effect.effect].passes();
+            let own = passes.iter().filter_map(|pass| match pass.target {
+                PassTarget::Own { format, pixels } => {
+                    let size = [0, 1].map(|axis| size[axis].div_ceil(pixels[axis].max(1)));
+                    Some(Target::new(gpu, pass.name, size, format))
+                }
+                PassTarget::Picture => None,
+            });
+            slot.own = own.collect();
+            slot.groups = passes.iter().map(|_| KeptBindGroup::default()).collect();
+            slot.fits = Some((effect.effect, size));
+        }
+        self.slots.iter().flat_map(|slot| &slot.own).map(Target::bytes).sum()
+    }
+
+    /// Binds the inputs of one frame; none where a pipeline is not there.
+    ///
+    /// # Errors
+    /// Never for uniforms of a fixed size.
+    pub fn bind(
+        &mut self,
+        gpu: &Gpu,
+        effects: &[Effect],
+        keys: &[EffectKey],
+        targets: &PostTargets<'_>,
+    ) -> Result<Option<EffectGroups>, GpuError> {
+        let mut groups = Vec::with_capacity(keys.len());
+        for (index, ((slot, effect), key)) in self.slots.iter_mut().zip(effects).zip(keys).enumerate() {
+            let (Some(pipelines), Some(color)) = (self.pipelines.get(key), source(targets, index)) else {
+                return Ok(None);
+            };
+            let params = slot.params.set(gpu, &effect.params, 0)?;
+            let mut of_effect = Vec::with_capacity(pipelines.len());
+            for (pass, (kept, (layout, _))) in slot.groups.iter_mut().zip(pipelines).enumerate() {
+                let mut bound = vec![
+                    (0, Bound::Buffer(params.clone())),
+                    (1, Bound::Buffer(targets.output.clone())),
+                    (2, Bound::View(targets.geometry.clone())),
+                    (3, Bound::View(color.clone())),
+                    (4, Bound::View(targets.ids.clone())),
+                ];
+                let earlier = slot.own.iter().take(pass).map(|target| Bound::View(target.view.clone()));
+                bound.extend((FIRST_OWN_BINDING..).zip(earlier));
+                of_effect.push(kept.get(gpu, "effect", layout, bound));
+            }
+            groups.push(of_effect);
+        }
+        Ok(Some(groups))
+    }
+
+    /// Draws all passes of all effects for view `view_index`; the first view clears the last target.
+    #[allow(clippy::too_many_arguments)]
+    pub fn draw(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        keys: &[EffectKey],
+        scene: &SceneBindings,
+        view_index: usize,
+        groups: &EffectGroups,
+        targets: &PostTargets<'_>,
+        timer: &mut Option<PassTimer>,
+    ) {
+        let nothing = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
+        for (index, ((slot, key), groups)) in self.slots.iter().zip(keys).zip(groups).enumerate() {
+            let Some(pipelines) = self.pipelines.get(key) else { return };
+            let last = match key.finish {
+                Finish::Next => source(targets, index + 1).map(|color| (color, nothing)),
+                _ if view_index > 0 => Some((targets.last, wgpu::LoadOp::Load)),
+                _ => Some((targets.last, nothing)),
+            };
+            let onto = slot.own.iter().map(|target| (&target.view, nothing)).chain(last);
+            for (((pass, (_, pipeline)), group), onto) in
+                EFFECTS[key.effect].passes().iter().zip(pipelines).zip(groups).zip(onto)
+            {
+                let times = timer.as_mut().and_then(|timer| timer.pass(pass.name));
+                let groups: &[(&wgpu::BindGroup, &[u32])] =
+                    &[(&scene.group, &[SceneBindings::offset(view_index)]), (group, &[])];
+                fullscreen::draw_onto(encoder, pass.name, pipeline, groups, onto, times);
+            }
+        }
+    }
+}
+
+/// The picture that the effect at this place of the chain reads.
+fn source<'a>(targets: &PostTargets<'a>, index: usize) -> Option<&'a wgpu::TextureView> {
+    targets.colors.get(index % targets.colors.len().max(1))
+}
+
+fn build(gpu: &Gpu, visibility: &Visibility, key: &EffectKey) -> Result<Pipelines, GpuError> {
+    let module = effect_module(key);
+    let passes = EFFECTS[key.effect].passes();
+    let build = |(index, pass): (usize, &EffectPass)| {
+        let uint = fullscreen::texture(wgpu::TextureSampleType::Uint);
+        let float = fullscreen::texture(wgpu::TextureSampleType::Float { filterable: false });
+        let mut types = vec![fullscreen::UNIFORM, fullscreen::UNIFORM, uint, float, uint];
+        types.extend(passes[..index].iter().map(|pass| if is_uint(pass) { uint } else { float }));
+        let layout = fullscreen::layout(gpu, pass.name, &types);
+        let target: wgpu::ColorTargetState = match (pass.target, key.finish) {
+            (PassTarget::Own { format, .. }, _) => format.into(),
+            (PassTarget::Picture, Finish::Next) => COLOR_FORMAT.into(),
+            (PassTarget::Picture, Finish::Add) => super::adding_light(gpu),
+            (PassTarget::Picture, Finish::Encode) => super::OUTPUT_8.into(),
+        };
+        let entries = ["post_vertex", pass.entry];
+        let pipeline = fullscreen::pipeline(gpu, pass.name, &module, entries, &[&visibility.layout, &layout], target)?;
+        Ok((layout, pipeline))
+    };
+    passes.iter().enumerate().map(build).collect()
+}
+
+fn is_uint(pass: &EffectPass) -> bool {
+    let PassTarget::Own { format, .. } = pass.target else { return false };
+    format.sample_type(None, None) == Some(wgpu::TextureSampleType::Uint)
+}
+
+/// The WGSL of a post effect for a key.
+pub fn effect_module(key: &EffectKey) -> Module {
+    let effect: &dyn PostEffect = EFFECTS[key.effect];
+    let mut module = Module::new(&[
+        wgsl!("lib/view.wgsl"),
+        wgsl!("lib/ids.wgsl"),
+        wgsl!("lib/geometry.wgsl"),
+        wgsl!("lib/encode.wgsl"),
+    ]);
+    let finish = match key.finish {
+        Finish::Next => 0,
+        Finish::Add => 1,
+        Finish::Encode => 2,
+    };
+    let mut bindings = format!(
+        "const ORTHOGRAPHIC: bool = {};\nconst FINISH: u32 = {finish}u;\n\
+         @group(0) @binding(0) var<uniform> view: View;\n\
+         @group(1) @binding(0) var<uniform> {}_params: {};\n\
+         @group(1) @binding(1) var<uniform> output: Output;\n\
+         @group(1) @binding(2) var geometry: texture_2d<u32>;\n\
+         @group(1) @binding(3) var color: texture_2d<f32>;\n\
+         @group(1) @binding(4) var ids: texture_2d<u32>;\n",
+        key.orthographic,
+        effect.file(),
+        effect.params_info().name
+    );
+    for (bit, feature) in effect.features().iter().enumerate() {
+        bindings.push_str(&format!("const {feature}: bool = {};\n", key.features >> bit & 1 == 1));
+    }
+    let own = effect.passes().iter().filter(|pass| pass.target != PassTarget::Picture);
+    for (pass, binding) in own.zip(FIRST_OWN_BINDING..) {
+        let kind = if is_uint(pass) { "u32" } else { "f32" };
+        bindings.push_str(&format!("@group(1) @binding({binding}) var {}: texture_2d<{kind}>;\n", pass.name));
+    }
+    module.add_generated("effect bindings", bindings);
+    module.add(wgsl!("lib/post.wgsl"));
+    for file in effect.wgsl() {
+        module.add(*file);
+    }
+    module
+}
