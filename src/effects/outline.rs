@@ -48,7 +48,7 @@ pub const PARAMS: &[Param] = &[
         .range(1.0, 180.0)
         .unit("degrees")
         .doc("Angle between the surfaces from which on that line is drawn.")
-        .examples(&["20", "60", "100"]),
+        .examples(&["40", "100"]),
 ];
 
 gpu_struct! {

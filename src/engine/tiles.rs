@@ -45,7 +45,7 @@ impl Engine {
 
     /// How many tiles a picture has.
     pub fn num_tiles(request: &Request) -> u32 {
-        request.size[0].div_ceil(TILE_PX) * request.size[1].div_ceil(TILE_PX)
+        request.size[0].div_ceil(TILE_PX).saturating_mul(request.size[1].div_ceil(TILE_PX))
     }
 
     /// Draws a picture in tiles, which overlap by as much as effects reach, and gives `sink` its rows from the top, some
@@ -60,6 +60,7 @@ impl Engine {
         sink: &mut dyn FnMut(&[u8]) -> io::Result<()>,
     ) -> Result<(), TileError> {
         let [width, height] = request.size;
+        crate::frame::check_picture(&self.gpu, request.size)?;
         let bytes_per_pixel = if request.wide { 8 } else { 4 };
         let row_bytes = width as usize * bytes_per_pixel;
         let margin = self.reach_px(request)?;

@@ -474,12 +474,18 @@ fn frame_encoder(gpu: &Gpu) -> wgpu::CommandEncoder {
 }
 
 fn check_size(gpu: &Gpu, input: &FrameInput<'_>) -> Result<(), GpuError> {
-    // Viewports end where textures do, so that this holds for pictures of tiles as well.
+    check_picture(gpu, input.size)?;
+    check_picture(gpu, input.drawn_size())
+}
+
+/// Refuses a picture beyond the device's largest texture; viewports end there, too, so that tiles do not help.
+///
+/// # Errors
+/// [`GpuError::TooLarge`] with both sizes.
+pub fn check_picture(gpu: &Gpu, [width, height]: [u32; 2]) -> Result<(), GpuError> {
     let limit = gpu.device.limits().max_texture_dimension_2d;
-    for [width, height] in [input.size, input.drawn_size()] {
-        if width == 0 || height == 0 || width > limit || height > limit {
-            return Err(GpuError::TooLarge { width, height, limit });
-        }
+    if width == 0 || height == 0 || width > limit || height > limit {
+        return Err(GpuError::TooLarge { width, height, limit });
     }
     Ok(())
 }

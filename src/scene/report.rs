@@ -137,6 +137,8 @@ note_kinds! {
     MaterialFile => "material file" / "material files": "not read",
     /// A material that parts name and no file describes.
     UnknownMaterial => "material" / "materials": "that no file describes, drawn in grey",
+    /// An assembly was asked for, and the format has none.
+    NoAssemblies => "assembly" / "assemblies": "asked for, which files of this format do not have: drawn as they are",
     /// A picture on a surface.
     PictureNotDrawn => "picture" / "pictures": "on surfaces not drawn: plain colours are",
 }

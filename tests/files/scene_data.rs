@@ -91,7 +91,7 @@ fn bad_files() -> Vec<(&'static str, Outcome)> {
         ("xyz_no_comment_line.xyz", Loads(24, &[K::CountMended])),
         ("xyz_symbols_unknown.xyz", Loads(3, &[K::ElementUnknown])),
         ("wrong_ext_cif_as.pdb", Loads(327, &[])),
-        ("wrong_ext_png_as.obj", Fails(": is a PNG picture, no molecule and no mesh; molecules are read as mmCIF, ")),
+        ("wrong_ext_png_as.obj", Fails(": is a PNG picture, no molecule and no mesh; molecules are read as mmCIF, PDB, SDF, MOL2, PQR and XYZ, meshes as glTF, OBJ, STL, PLY, OFF and 3MF")),
     ]
 }
 
@@ -215,3 +215,17 @@ fn every_file_loads_or_is_refused_with_a_message() {
     }
     assert!(num_loaded > 150 && num_refused > 30, "{num_loaded} loaded, {num_refused} refused");
 }
+
+/// Triangles of a file that are left out since they have no area or are there already.
+pub fn num_dropped(report: &restyle::scene::Report) -> u64 {
+    u64::from(report.count(NoteKind::FlatTriangle) + report.count(NoteKind::RepeatedTriangle))
+}
+
+/// Notes of mending, which depend on a mesh and not on its format.
+pub const MENDED: &[NoteKind] = &[
+    NoteKind::FlatTriangle,
+    NoteKind::RepeatedTriangle,
+    NoteKind::NearlyWelded,
+    NoteKind::FaceTurned,
+    NoteKind::InsideOut,
+];

@@ -18,6 +18,9 @@ pub enum Molecule {
 /// A single, a double and a triple bond; no shipped file says of what order its bonds are.
 const ACRYLONITRILE: Molecule = Molecule::Pdb(include_str!("acrylonitrile.pdb"));
 
+/// Six atoms that touch: two chains, one of two residues.
+const GROUPS: Molecule = Molecule::Pdb(include_str!("groups.pdb"));
+
 /// A strip of pictures that differ in one parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Strip {
@@ -220,16 +223,16 @@ const SETTINGS: &[Setting] = &[
     Setting {
         group: "outlinePost",
         param: "depth_step",
-        scene: Molecule::Shipped("nanotube"),
-        said: "A nanotube.",
-        style: r##"{ "geometry": { "scale": 0.9 }, "shaders": [{ "name": "shown", "properties": { "silhouette_width": "6pt" } }] }"##,
+        scene: Molecule::Shipped("sodium_chloride"),
+        said: "A crystal of salt, with a `silhouette_width` of `14pt`.",
+        style: r##"{ "geometry": { "scale": 0.6 }, "shaders": [{ "name": "shown", "properties": { "silhouette_width": "14pt" } }] }"##,
     },
     Setting {
         group: "outlinePost",
         param: "boundary",
-        scene: Molecule::Shipped("caffeine"),
-        said: "Caffeine, one residue of one chain, with a `boundary_width` of `6pt`.",
-        style: r##"{ "geometry": { "scale": 0.6 }, "shaders": [{ "name": "shown", "properties": { "boundary_width": "6pt", "silhouette_width": "6pt" } }] }"##,
+        scene: GROUPS,
+        said: "Six atoms in three residues of two chains, with a `boundary_width` of `36pt`.",
+        style: r##"{ "geometry": { "scale": 1 }, "shaders": [{ "name": "shown", "properties": { "boundary_width": "36pt" } }] }"##,
     },
     Setting {
         group: "outlinePost",

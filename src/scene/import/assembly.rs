@@ -18,11 +18,6 @@ const MAX_RUNS: u64 = 2_000_000;
 /// How far the product of a rotation and its transpose may be from one. Real files have six decimals, old ones fewer.
 const RIGID_TOLERANCE: f64 = 2e-3;
 
-/// The error of a file without any assembly.
-pub(super) fn none(file: &str, assembly: &str) -> SceneError {
-    SceneError::NoSuchAssembly { file: file.to_string(), assembly: assembly.to_string(), available: "none".to_string() }
-}
-
 /// Chains and the matrices that place them.
 #[derive(Debug, Default)]
 struct Group {

@@ -110,7 +110,8 @@ pub(super) fn read(
     }
     let unsupported = |what: String| Err(SceneError::Unsupported { file: file.to_string(), what });
     let mut import = Import { file, options, report: Report::default(), folder, side_files: Vec::new() };
-    let content = match sniff(file, bytes) {
+    let format = sniff(file, bytes);
+    let content = match format {
         Format::Pdb => pdb::read(&mut import, bytes).map(Content::Molecule)?,
         Format::Cif => cif::read(&mut import, bytes).map(Content::Molecule)?,
         Format::BinaryCif => bcif::read(&mut import, bytes).map(Content::Molecule)?,
@@ -136,21 +137,20 @@ pub(super) fn read(
         }
     };
     let Import { mut report, side_files, .. } = import;
+    // Importers whose formats have assemblies have placed copies or refused by now.
+    let has_assemblies = matches!(format, Format::Pdb | Format::Cif | Format::BinaryCif);
+    if let Some(assembly) = options.assembly.as_ref().filter(|_| !has_assemblies) {
+        report.note(NoteKind::NoAssemblies, None, || lines::quote(assembly.as_bytes()));
+    }
     let (molecule, assembly) = match content {
-        Content::Molecule(molecule) => {
-            // Importers whose formats have assemblies have set copies or refused by now.
-            if let Some(assembly) = options.assembly.as_ref().filter(|_| molecule.copies.is_empty()) {
-                return Err(assembly::none(file, assembly));
-            }
-            (molecule, Assembly::default())
-        }
+        Content::Molecule(molecule) => (molecule, Assembly::default()),
         Content::Mesh(raw) => {
             let assembly = Assembly::build(raw, 0, &mut report);
             let assembly = assembly.ok_or_else(|| SceneError::NoTriangles { file: file.to_string() })?;
             (Molecule::default(), assembly)
         }
     };
-    Ok(Scene::of_file(file, sniff(file, bytes), molecule, assembly, report, side_files))
+    Ok(Scene::of_file(file, format, molecule, assembly, report, side_files))
 }
 
 /// What a file holds.
