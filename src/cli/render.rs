@@ -228,6 +228,8 @@ fn draw_to(
 ) -> Result<Drawn, Failure> {
     let first = Instant::now();
     let cannot = |output: &Path, error: &io::Error| Failure::input(cannot_write(output, error));
+    // Before anything is written.
+    engine.check_size(request)?;
     if let Some(output) = output.filter(|_| Engine::is_tiled(request)) {
         let header = RowsHeader { size: request.size, opaque: engine.is_opaque(request), wide: request.wide };
         let mut failed = None;

@@ -43,6 +43,14 @@ impl Engine {
         u64::from(request.size[0]) * u64::from(request.size[1]) > WHOLE_PX
     }
 
+    /// Refuses a picture that the device cannot draw, in tiles or not.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`] with both sizes.
+    pub fn check_size(&self, request: &Request) -> Result<(), GpuError> {
+        crate::frame::check_picture(&self.gpu, request.size)
+    }
+
     /// How many tiles a picture has.
     pub fn num_tiles(request: &Request) -> u32 {
         request.size[0].div_ceil(TILE_PX).saturating_mul(request.size[1].div_ceil(TILE_PX))
@@ -60,7 +68,6 @@ impl Engine {
         sink: &mut dyn FnMut(&[u8]) -> io::Result<()>,
     ) -> Result<(), TileError> {
         let [width, height] = request.size;
-        crate::frame::check_picture(&self.gpu, request.size)?;
         let bytes_per_pixel = if request.wide { 8 } else { 4 };
         let row_bytes = width as usize * bytes_per_pixel;
         let margin = self.reach_px(request)?;

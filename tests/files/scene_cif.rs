@@ -34,7 +34,7 @@ const MOLECULES: &[(&str, usize, usize, usize, usize)] = &[
     ("1rb8_assembly.cif", 306_720, 306_720, 240, 314_940),
     ("1ubq.cif", 660, 660, 1, 608),
     ("3nig.cif", 22_226 - 40, 22_226 - 40, 12, 21_562),
-    ("4hhb.cif", 4779, 4779, 4, 4631),
+    ("4hhb.cif", 4779, 4779, 4, 4608),
     ("4v5a.cif", 290_487, 290_487, 112, 315_323),
     ("Fe2O3_mp-715572_conventional_standard.cif", 80, 80, 1, 126),
     ("Zr-UiO-66-pressure.cif", 9, 27, 1, 2),

@@ -61,7 +61,7 @@ fn styles() -> Vec<(String, String)> {
         }
     }
     styles.sort();
-    assert_eq!(styles.len(), 9);
+    assert_eq!(styles.len(), 11);
     styles
 }
 

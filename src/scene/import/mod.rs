@@ -146,11 +146,23 @@ pub(super) fn read(
         Content::Molecule(molecule) => (molecule, Assembly::default()),
         Content::Mesh(raw) => {
             let assembly = Assembly::build(raw, 0, &mut report);
-            let assembly = assembly.ok_or_else(|| SceneError::NoTriangles { file: file.to_string() })?;
+            let assembly = assembly.ok_or_else(|| no_triangles(file, &report))?;
             (Molecule::default(), assembly)
         }
     };
     Ok(Scene::of_file(file, format, molecule, assembly, report, side_files))
+}
+
+/// The error of a mesh of which nothing is left.
+fn no_triangles(file: &str, report: &Report) -> SceneError {
+    let file = file.to_string();
+    match report.count(NoteKind::FlatTriangle) {
+        0 => SceneError::NoTriangles { file },
+        _ => {
+            let what = "holds only triangles without area; export the model again, in smaller units".to_owned();
+            SceneError::Damaged { file, what }
+        }
+    }
 }
 
 /// What a file holds.
