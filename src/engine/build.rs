@@ -103,7 +103,12 @@ fn molecule_objects(
 
     let group = |atom: &Atom| group_word(molecule.residue(atom).chain, atom.residue);
 
-    let mut list = DrawList::default();
+    // Large lists are never grown: that would hold them twice.
+    let mut list = DrawList {
+        atoms: Vec::with_capacity(uses.iter().flatten().count()),
+        connectors: Vec::with_capacity(assignment.connectors.iter().flatten().count()),
+        ..DrawList::default()
+    };
     // Which atom and which bond each object is, where copies need to know.
     let is_copied = !molecule.copies.is_empty();
     let (mut atom_of, mut bond_of) = (Vec::new(), Vec::new());

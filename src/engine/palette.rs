@@ -63,8 +63,10 @@ impl AtomColors {
 /// Gives each part of a mesh its own colour.
 pub struct PartColors {
     linear: [Vec3; PALETTE.len()],
-    /// Number of each part's name, in order of first appearance; parts without a name are told apart by their shape.
-    turn_of: std::collections::HashMap<(u32, u32), u32>,
+    /// The turn of each name of the assembly, in order of first appearance. Names that differ only in a number at their end
+    /// are one: all bolts have one colour.
+    turn_of_name: Vec<u32>,
+    num_turns: u32,
 }
 
 /// What has no material: a light grey, as bare plaster.
@@ -74,16 +76,16 @@ impl PartColors {
     /// Prepares the colours of all parts.
     pub fn new(assembly: &Assembly) -> PartColors {
         let mut turn_of = std::collections::HashMap::new();
+        let mut turn_of_name = vec![0; assembly.names.len()];
         for part in &assembly.parts {
+            let name = &assembly.names[part.name as usize];
+            let kind = name.trim_end_matches(|c: char| c.is_ascii_digit() || " .-_#:()[]".contains(c));
             let next = turn_of.len() as u32;
-            turn_of.entry(PartColors::key(assembly, part)).or_insert(next);
+            turn_of_name[part.name as usize] =
+                *turn_of.entry(if kind.is_empty() { name } else { kind }).or_insert(next);
         }
-        PartColors { linear: PALETTE.map(|color| linear(Srgba::from_bytes(color))), turn_of }
-    }
-
-    fn key(assembly: &Assembly, part: &Part) -> (u32, u32) {
-        let is_named = !assembly.names[part.name as usize].is_empty();
-        (part.name, if is_named { u32::MAX } else { part.shape })
+        let num_turns = turn_of.len() as u32;
+        PartColors { linear: PALETTE.map(|color| linear(Srgba::from_bytes(color))), turn_of_name, num_turns }
     }
 
     /// Whether a scheme leaves meshes the colours of their file. Elements do: a mesh has none.
@@ -100,7 +102,9 @@ impl PartColors {
             let plain = if is_colored { Vec3::ONE } else { NO_MATERIAL };
             return material.map_or(plain, |material| material.base_color);
         }
-        let turn = self.turn_of.get(&PartColors::key(assembly, part)).copied().unwrap_or(0);
+        let is_named = !assembly.names[part.name as usize].is_empty();
+        // Parts without a name are told apart by their shapes.
+        let turn = if is_named { self.turn_of_name[part.name as usize] } else { self.num_turns + part.shape };
         self.linear[turn as usize % PALETTE.len()]
     }
 }

@@ -43,11 +43,14 @@ impl KeptTexture {
             // Whole rows that changed go in one write, a row that is not full by itself.
             let is_full = |row: usize| (row + 1) * ROW_BYTES <= bytes.len();
             let mut end = row;
-            while end < hashes.len() && changed(end) && is_full(end) {
+            while end < hashes.len() && end - row < MOST_ROWS_AT_ONCE && changed(end) && is_full(end) {
                 end += 1;
             }
             if end > row {
                 write_rows(gpu, texture, row, OBJECT_ROW, &bytes[row * ROW_BYTES..end * ROW_BYTES]);
+                if end - row == MOST_ROWS_AT_ONCE {
+                    gpu.flush_writes();
+                }
             } else if changed(row) {
                 let rest = &bytes[row * ROW_BYTES..];
                 write_rows(gpu, texture, row, (rest.len() / TEXEL_BYTES) as u32, rest);
@@ -91,6 +94,9 @@ impl KeptTexture {
         self.texture.as_ref().map_or(0, |(texture, _)| u64::from(texture.height()) * ROW_BYTES as u64)
     }
 }
+
+/// Rows of a changed content that are written at once, so that copies on their way do not pile up: 8 MiB.
+const MOST_ROWS_AT_ONCE: usize = 256;
 
 /// Rows that are written at once: 2 MiB.
 const ROWS_AT_ONCE: usize = 64;

@@ -459,6 +459,7 @@ const EXTENDING: &str = r##"{ "extends": "education.json", "camera": { "fov": 20
     "mapping": { "atom[element=C]": "ink", "connector": null, "*[chain=A]": "unlit" },
     "shaders": [{ "name": "carbon", "properties": { "steps": 2, "hull_size": "2pt" } },
                 { "name": "ink", "shader": "unlit", "properties": { "base_color": "#101010" } },
+                { "name": "dim", "shader": "toon", "properties": { "scale": 0.1, "bias": 0 } },
                 { "name": "glass", "shader": "curvature", "properties": { "gain": 3, "opacity": 0.5 } }] }"##;
 
 /// A style with every key that there is.
