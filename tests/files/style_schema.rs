@@ -430,6 +430,7 @@ fn schema_and_loader_agree_on_damaged_styles() {
     // Every key of every table, with its default and its examples.
     texts.push(everything(&house));
     texts.push(EXTENDING.to_owned());
+    texts.push(DIM.to_owned());
     let pool: Vec<(String, Vec<Token>)> = texts.iter().map(|text| (text.clone(), tokens(text))).collect();
     let mut random = Random(0x5C4E_3A00_0001);
     let (mut taken, mut refused, mut only_loader) = (0, 0, BTreeMap::<&str, u32>::new());
@@ -459,8 +460,10 @@ const EXTENDING: &str = r##"{ "extends": "education.json", "camera": { "fov": 20
     "mapping": { "atom[element=C]": "ink", "connector": null, "*[chain=A]": "unlit" },
     "shaders": [{ "name": "carbon", "properties": { "steps": 2, "hull_size": "2pt" } },
                 { "name": "ink", "shader": "unlit", "properties": { "base_color": "#101010" } },
-                { "name": "dim", "shader": "toon", "properties": { "scale": 0.1, "bias": 0 } },
                 { "name": "glass", "shader": "curvature", "properties": { "gain": 3, "opacity": 0.5 } }] }"##;
+
+/// A small style that one number makes meaningless: no light but black is left.
+const DIM: &str = r#"{ "shaders": [{ "name": "dim", "shader": "toon", "properties": { "scale": 0.1, "bias": 0 } }] }"#;
 
 /// A style with every key that there is.
 fn everything(house: &House) -> String {
