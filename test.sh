@@ -37,8 +37,9 @@ cargo fmt --check
 step "lints"
 cargo clippy --quiet --all-targets -- -D warnings
 
-step "molecules are what their script makes"
+step "molecules and meshes are what their scripts make"
 python3 molecules/make.py --check
+python3 -B meshes/make.py --check
 
 step "tests"
 RESTYLE_GPU=required cargo test --quiet

@@ -131,8 +131,8 @@ impl Layout {
         order.retain(|&shape| !parts_of[shape as usize].is_empty());
         // Single places first, in the order of the file.
         order.sort_by_key(|&shape| parts_of[shape as usize].len() > 1);
-        let mut layout = Layout::default();
-        layout.num_single = order.iter().filter(|&&shape| parts_of[shape as usize].len() == 1).count();
+        let num_single = order.iter().filter(|&&shape| parts_of[shape as usize].len() == 1).count();
+        let mut layout = Layout { num_single, ..Layout::default() };
         for shape in order {
             let of = &assembly.shapes[shape as usize];
             let first = layout.parts.len() as u32;

@@ -128,7 +128,7 @@ mod tests {
         let template = TABLE.find(Name::new(residue.as_bytes())).expect("a template");
         let is_usual = |name: Name| {
             let rare = ["OXT", "OT1", "OT2", "OP3", "O1P", "O2P", "O3P", "C5M"];
-            !rare.contains(&name.as_str()) && !(residue == "ILE" && name.as_str() == "CD")
+            !(rare.contains(&name.as_str()) || residue == "ILE" && name.as_str() == "CD")
         };
         let usual = template
             .bonds
@@ -170,7 +170,7 @@ mod tests {
             for (place, name) in (0..).zip(&template.names) {
                 let is_old = |place: u8| {
                     let name = template.names[place as usize].as_str();
-                    old.contains(&name) && !(name == "CD" && !template.names.contains(&Name::new(b"CD1")))
+                    (template.names.contains(&Name::new(b"CD1")) || name != "CD") && old.contains(&name)
                 };
                 let own = template
                     .bonds

@@ -109,7 +109,7 @@ fn the_bluetongue_core_has_sixty_copies_around_its_centre() {
     let file = folder.join("2btv.pdb");
     let molecule = load_assembly(&file, "1").unwrap_or_else(|error| panic!("{error}")).molecule;
     assert_eq!((molecule.atoms.len(), molecule.copies.len()), (49_061, 60));
-    assert!(molecule.copies.iter().all(|copy| copy.atoms == [0..49_061]));
+    assert!(molecule.copies.iter().all(|copy| copy.atoms.first() == Some(&(0..49_061))));
     assert_eq!(molecule.drawn_balls().count(), 2_943_660);
     // The core is 700 angstrom wide, and its symmetry puts as much on one side as on the other.
     let sphere = molecule.bounding_sphere();

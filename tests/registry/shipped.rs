@@ -3,15 +3,15 @@
 use restyle::config::{self, Catalog, Source};
 use restyle::engine;
 use restyle::scene::Scene;
-use restyle::shipped::{LOOKS, MOLECULES, SCENES, Shipped};
+use restyle::shipped::{LOOKS, MESHES, MOLECULES, SCENES, Shipped};
 
 use super::{assert_none, at, files_below};
 
 /// The schema that the styles refer to.
 const NO_STYLES: &[&str] = &[restyle::config::schema::FILE];
 
-/// Files that write molecules instead of being one.
-const NO_MOLECULES: &[&str] = &["make.py"];
+/// Files that write molecules or meshes instead of being one.
+const MAKERS: &[&str] = &["make.py"];
 
 fn assert_lists_the_files_of(folder: &str, shipped: &[Shipped], except: &[&str]) {
     let mut listed: Vec<String> = shipped.iter().map(|shipped| format!("{folder}/{}", shipped.file)).collect();
@@ -40,7 +40,12 @@ fn looks_are_the_files_of_styles() {
 
 #[test]
 fn molecules_are_the_files_of_their_folder() {
-    assert_lists_the_files_of("molecules", MOLECULES, NO_MOLECULES);
+    assert_lists_the_files_of("molecules", MOLECULES, MAKERS);
+}
+
+#[test]
+fn meshes_are_the_files_of_their_folder() {
+    assert_lists_the_files_of("meshes", MESHES, MAKERS);
 }
 
 #[test]
