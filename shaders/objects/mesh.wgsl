@@ -21,12 +21,13 @@ struct MeshVarying {
     @location(0) @interpolate(flat) id: u32,
 }
 
-// Clip position with the depth that rays have, so that triangles and ray casts meet exactly.
-fn clip_with_depth(position: vec3<f32>) -> vec4<f32> {
+// Clip position with the depth that rays have, `behind` farther, so that triangles and ray casts meet exactly.
+fn clip_with_depth(position: vec3<f32>, behind: f32) -> vec4<f32> {
     let flat_clip = clip_from_view(view, position);
     let t = -position.z;
-    let z = select(view.depth_from_t.x, view.depth_from_t.y + view.depth_from_t.z * t, ORTHOGRAPHIC);
-    return vec4<f32>(flat_clip.xy, z, flat_clip.w);
+    let parallel = view.depth_from_t.y + view.depth_from_t.z * (t + behind);
+    let z = select(view.depth_from_t.x * t / max(t + behind, view.near), parallel, ORTHOGRAPHIC);
+    return vec4<f32>(flat_clip.xy, select(z, view.depth_from_t.x, !ORTHOGRAPHIC && behind == 0.0), flat_clip.w);
 }
 
 @vertex
@@ -43,6 +44,7 @@ fn mesh_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) insta
     let vertex = mesh_vertex_at(vertex_index);
     let part = mesh_part_at(run.first_part + vertex.part);
     var position = to_view(view, mesh_to_world(part, vertex.position));
+    var behind = 0.0;
     if SHELL {
         let material = materials[part.material];
         let t = max(-position.z, view.near);
@@ -53,13 +55,15 @@ fn mesh_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) insta
         let volume = abs(dot(part.row_x.xyz, cross(part.row_y.xyz, part.row_z.xyz)));
         let outwards = turned / max(pow(volume, 2.0 / 3.0), 1e-30);
         position += (view.view_from_world * vec4<f32>(outwards, 0.0)).xyz * width;
+        // A step that is lower than its line is wide has none: there the shell would come through in dashes.
+        behind = width;
         // A part without an outline has no shell.
         if width <= 0.0 {
             out.position = vec4<f32>(2.0, 2.0, 0.5, 1.0);
             return out;
         }
     }
-    out.position = clip_with_depth(position);
+    out.position = clip_with_depth(position, behind);
     return out;
 }
 

@@ -1,5 +1,7 @@
 //! Colours of atoms by what they are: element, chain or residue.
 
+use std::collections::{HashMap, HashSet};
+
 use glam::Vec3;
 
 use crate::config::{BaseColor, Srgba};
@@ -33,7 +35,7 @@ pub struct AtomColors {
 impl AtomColors {
     /// Prepares the colours of a molecule; residue names are numbered only where `by_residue`.
     pub fn new(molecule: &Molecule, by_residue: bool) -> AtomColors {
-        let mut names = std::collections::HashMap::new();
+        let mut names = HashMap::new();
         let residue_kinds = if by_residue {
             molecule
                 .residues
@@ -64,7 +66,7 @@ impl AtomColors {
 pub struct PartColors {
     linear: [Vec3; PALETTE.len()],
     /// The turn of each name of the assembly, in order of first appearance. Names that differ only in a number at their end
-    /// are one: all bolts have one colour.
+    /// are one where at least half of their parts are copies of others: all bolts have one colour, all bodies have not.
     turn_of_name: Vec<u32>,
     num_turns: u32,
 }

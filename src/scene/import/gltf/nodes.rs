@@ -18,7 +18,7 @@ use crate::scene::mesh::RawPart;
 use crate::scene::report::{NoteKind, Report};
 
 /// Parts that small files may have on top of one for every second byte.
-const SPARE_PARTS: usize = 1 << 14;
+const SPARE_PARTS: usize = 200_000;
 
 /// Where the walk is in one node.
 struct Open<'a> {
