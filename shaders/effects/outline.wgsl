@@ -69,10 +69,10 @@ fn continued(g: Geometry, own: Ray, other: Ray) -> Continued {
     let bend = g.bend_px / pixel_world(view, g.depth);
     let d_squared = dot(d, d);
     let a = bend * d_squared;
-    let b = bend * dot(e, d) + dot(g.normal_view, d);
-    let c = bend * dot(e, e) + 2.0 * dot(g.normal_view, e);
+    let b = bend * dot(e, d) + dot(g.facet_view, d);
+    let c = bend * dot(e, e) + 2.0 * dot(g.facet_view, e);
     let inside = b * b - a * c;
-    let facing = dot(g.normal_view, own.direction);
+    let facing = dot(g.facet_view, own.direction);
     let before = facing * facing;
     // Along the way `inside` is a parabola of curvature -2 k from `before` to `inside`, 0 on the outline.
     let k = bend * bend * dot(e, e) * d_squared;
@@ -87,7 +87,7 @@ fn continued(g: Geometry, own: Ray, other: Ray) -> Continued {
 // How depth changes for a pixel to the right and down.
 fn depth_slope(g: Geometry, ray: Ray) -> vec2<f32> {
     let pixel = pixel_world(view, g.depth);
-    return pixel * vec2<f32>(-g.normal_view.x, g.normal_view.y) / min(dot(g.normal_view, ray.direction), -1e-3);
+    return pixel * vec2<f32>(-g.facet_view.x, g.facet_view.y) / min(dot(g.facet_view, ray.direction), -1e-3);
 }
 
 // The normal of the touching sphere where the neighbour's ray meets it.
@@ -101,10 +101,6 @@ fn continued_normal(g: Geometry, own: Ray, other: Ray, depth: f32) -> vec3<f32> 
 fn group_differs(a: Geometry, b: Geometry) -> bool {
     return outline_params.by_object != 0u || ((a.group ^ b.group) & outline_params.group_mask) != 0u
         || is_part(a.id) || is_part(b.id);
-}
-
-fn is_part(id: u32) -> bool {
-    return (id >> 29u) == KIND_MESH;
 }
 
 // The seed between a pixel and its neighbour a `step` to the right or down.
@@ -199,8 +195,10 @@ fn find_seeds(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> 
     var left = 0u;
     let right = textureLoad(ids, min(at + vec2<u32>(1u, 0u), last), 0).x;
     let below = textureLoad(ids, min(at + vec2<u32>(0u, 1u), last), 0).x;
-    if own != right || (OUTLINE_CREASES && own != 0u && at.x < last.x) { left |= 1u; }
-    if own != below || (OUTLINE_CREASES && own != 0u && at.y < last.y) { left |= 2u; }
+    // Within one triangle nothing folds.
+    let may_fold = OUTLINE_CREASES && own != 0u && !is_part(own);
+    if own != right || (may_fold && at.x < last.x) { left |= 1u; }
+    if own != below || (may_fold && at.y < last.y) { left |= 2u; }
     var seeds = vec4<u32>(0u);
     while left != 0u {
         let step = select(vec2<u32>(1u, 0u), vec2<u32>(0u, 1u), (left & 1u) == 0u);
@@ -224,7 +222,8 @@ fn may_be_edge(a: vec4<u32>, b: vec4<u32>) -> bool {
     if is_line(a) || is_line(b) { return false; }
     if OUTLINE_CREASES || a.w == 0u || b.w == 0u { return true; }
     let parts = a.w != b.w && (is_part(a.w) || is_part(b.w));
-    let differs = outline_params.by_object != 0u || (((a.z ^ b.z) >> 16u) & outline_params.group_mask) != 0u || parts;
+    let groups = (((a.z ^ b.z) >> 16u) & outline_params.group_mask) != 0u && !is_part(a.w) && !is_part(b.w);
+    let differs = (outline_params.by_object != 0u && a.w != b.w) || groups || parts;
     let depths = vec2<f32>(bitcast<f32>(a.x), bitcast<f32>(b.x));
     return (OUTLINE_BOUNDARIES && differs) || abs(depths.x - depths.y) > 0.5 * outline_params.depth_step;
 }

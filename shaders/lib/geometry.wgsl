@@ -5,6 +5,8 @@ struct Geometry {
     depth: f32,
     // Unit, in view space, turned to the viewer.
     normal_view: vec3<f32>,
+    // The same of the plane that goes on beyond the pixel: of a triangle its own, where `normal_view` is interpolated.
+    facet_view: vec3<f32>,
     // Curvature times the size of a pixel there: 1 over the radius in pixels, 0 on flat surfaces.
     bend_px: f32,
     // Which group of objects (16 bits).
@@ -32,16 +34,16 @@ fn unpack_unit(word: u32) -> vec3<f32> {
 }
 
 fn pack_geometry(g: Geometry) -> vec4<u32> {
-    return vec4<u32>(
-        bitcast<u32>(g.depth),
-        pack_unit(g.normal_view),
-        (pack2x16float(vec2<f32>(min(g.bend_px, 6e4), 0.0)) & 0xffffu) | (g.group << 16u),
-        g.id,
-    );
+    let bend_and_group = (pack2x16float(vec2<f32>(min(g.bend_px, 6e4), 0.0)) & 0xffffu) | (g.group << 16u);
+    // A part is flat and its own group, so that there is room for its facet.
+    let own = select(bend_and_group, pack_unit(g.facet_view), is_part(g.id));
+    return vec4<u32>(bitcast<u32>(g.depth), pack_unit(g.normal_view), own, g.id);
 }
 
 fn unpack_geometry(texel: vec4<u32>) -> Geometry {
-    return Geometry(
-        bitcast<f32>(texel.x), unpack_unit(texel.y), unpack2x16float(texel.z).x, texel.z >> 16u, texel.w,
-    );
+    let normal = unpack_unit(texel.y);
+    let part = is_part(texel.w);
+    let facet = select(normal, unpack_unit(texel.z), part);
+    let bend_px = select(unpack2x16float(texel.z).x, 0.0, part);
+    return Geometry(bitcast<f32>(texel.x), normal, facet, bend_px, select(texel.z >> 16u, 0u, part), texel.w);
 }

@@ -14,3 +14,8 @@ const INDEX_MASK: u32 = 0x1fffffffu;
 fn make_id(kind: u32, index: u32) -> u32 {
     return (kind << 29u) | index;
 }
+
+// Whether it is a part of a mesh, or a triangle of one.
+fn is_part(id: u32) -> bool {
+    return (id >> 29u) == KIND_MESH;
+}

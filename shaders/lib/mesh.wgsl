@@ -125,6 +125,8 @@ struct MeshPoint {
     part: u32,
     // Unit, interpolated between the vertices, turned to the viewer.
     normal: vec3<f32>,
+    // Unit, of the triangle itself, turned to the viewer.
+    facet: vec3<f32>,
     base_color: vec3<f32>,
     // Change of the normal for a step along the triangle's plane: dot with the step gives the shares of the two edges.
     share_b: vec3<f32>,
@@ -172,6 +174,7 @@ fn mesh_point(ray: Ray, index: u32) -> MeshPoint {
     let inverse_length = inverseSqrt(max(dot(mixed, mixed), 1e-12));
     // To the side of the triangle that is seen.
     let outwards = select(across, -across, facing > 0.0);
+    point.facet = outwards * inverseSqrt(area_squared);
     let turned = select(inverse_length, -inverse_length, dot(mixed, outwards) < 0.0);
     point.normal = mixed * turned;
     // An interpolated normal may lean away where the triangle does not: it is then seen from the side.

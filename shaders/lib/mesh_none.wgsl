@@ -4,11 +4,12 @@ struct MeshPoint {
     t: f32,
     part: u32,
     normal: vec3<f32>,
+    facet: vec3<f32>,
     base_color: vec3<f32>,
 }
 
 fn mesh_point(ray: Ray, index: u32) -> MeshPoint {
-    return MeshPoint(0.0, 0u, vec3<f32>(0.0), vec3<f32>(0.0));
+    return MeshPoint(0.0, 0u, vec3<f32>(0.0), vec3<f32>(0.0), vec3<f32>(0.0));
 }
 
 fn mesh_normal_step(point: MeshPoint, step: vec3<f32>) -> vec3<f32> {

@@ -16,6 +16,8 @@ struct Surface {
     normal_dy: vec3<f32>,
     to_viewer_dx: vec3<f32>,
     to_viewer_dy: vec3<f32>,
+    // Unit, turned to the viewer: the triangle's own where `normal_view` is interpolated.
+    facet_view: vec3<f32>,
     // Curvature across its axis: 1 over the radius, 0 where flat.
     bend: f32,
     // Which group of objects (16 bits): of atoms, chain (7 bits) and residue (9).
@@ -98,6 +100,8 @@ fn surface_at(ray: Ray, id: u32) -> Surface {
     s.bend = bend;
     s.position_view = ray.origin + t * ray.direction;
     s.normal_view = normal;
+    s.facet_view = normal;
+    if MESHES && is_mesh { s.facet_view = mesh.facet; }
     s.to_viewer = -normalize(ray.direction);
     let dx = ray_step_dx(view);
     let dy = ray_step_dy(view);

@@ -13,6 +13,6 @@ fn shade_geometry_fragment(@builtin(position) position: vec4<f32>) -> ShadedSurf
     let is_line = HULLS && (id >> 29u) > KIND_LAST_SURFACE;
     let depth = select(-s.position_view.z, 0.0, is_line);
     let bend_px = s.bend * pixel_world(view, depth);
-    let geometry = pack_geometry(Geometry(depth, s.normal_view, bend_px, s.group, s.object));
+    let geometry = pack_geometry(Geometry(depth, s.normal_view, s.facet_view, bend_px, s.group, s.object));
     return ShadedSurface(vec4<f32>(shaded(s, id), 1.0), geometry);
 }

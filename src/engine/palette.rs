@@ -77,14 +77,23 @@ const NO_MATERIAL: Vec3 = Vec3::splat(0.6);
 impl PartColors {
     /// Prepares the colours of all parts.
     pub fn new(assembly: &Assembly) -> PartColors {
-        let mut turn_of = std::collections::HashMap::new();
+        fn kind(name: &str) -> &str {
+            name.trim_end_matches(|c: char| c.is_ascii_digit() || " .-_#:()[]".contains(c))
+        }
+        let mut of_kinds: HashMap<&str, (usize, HashSet<u32>)> = HashMap::new();
+        for part in &assembly.parts {
+            let (num_parts, shapes) = of_kinds.entry(kind(&assembly.names[part.name as usize])).or_default();
+            *num_parts += 1;
+            shapes.insert(part.shape);
+        }
+        let mut turn_of: HashMap<&str, u32> = HashMap::new();
         let mut turn_of_name = vec![0; assembly.names.len()];
         for part in &assembly.parts {
-            let name = &assembly.names[part.name as usize];
-            let kind = name.trim_end_matches(|c: char| c.is_ascii_digit() || " .-_#:()[]".contains(c));
+            let name = assembly.names[part.name as usize].as_str();
+            let are_copies = of_kinds.get(kind(name)).is_some_and(|(num_parts, shapes)| 2 * shapes.len() <= *num_parts);
             let next = turn_of.len() as u32;
-            turn_of_name[part.name as usize] =
-                *turn_of.entry(if kind.is_empty() { name } else { kind }).or_insert(next);
+            let shared = are_copies && !kind(name).is_empty();
+            turn_of_name[part.name as usize] = *turn_of.entry(if shared { kind(name) } else { name }).or_insert(next);
         }
         let num_turns = turn_of.len() as u32;
         PartColors { linear: PALETTE.map(|color| linear(Srgba::from_bytes(color))), turn_of_name, num_turns }
