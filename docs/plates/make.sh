@@ -37,10 +37,24 @@ for size in 4 12 24; do
 done
 convert \( "$work"/dot{0.25,0.4,0.5}.png +append \) \( "$work"/hull{4,12,24}.png +append \) -append -strip -colors 255 png8:fig4_outlines.png
 
-# Table 1: the four looks on the four molecules.
-"$restyle" gallery c60 arsenic_trioxide anthracene magnesium -o "$work/gallery" --size 300x300 2>/dev/null >/dev/null
+# Table 1: the four looks of the paper on its four molecules.
+published='advertisement education scientific future'
+"$restyle" gallery c60 arsenic_trioxide anthracene magnesium $(printf -- '-s %s ' $published) -o "$work/table1" --size 300x300 >/dev/null 2>&1
 for molecule in c60 arsenic_trioxide anthracene magnesium; do
-  convert "$work/gallery/$molecule".{advertisement,education,scientific,future}.png +append "$work/row_$molecule.png"
+  convert "$work/table1/$molecule".{advertisement,education,scientific,future}.png +append "$work/row_$molecule.png"
 done
-convert "$work"/row_{c60,arsenic_trioxide,anthracene,magnesium}.png -append -strip -colors 255 png8:gallery.png
+convert "$work"/row_{c60,arsenic_trioxide,anthracene,magnesium}.png -append -strip -colors 255 png8:table1.png
+
+# All looks on four shipped scenes.
+"$restyle" gallery gearbox c60 alpha_helix caffeine -o "$work/gallery" --size 210x210 >/dev/null 2>&1
+for scene in gearbox c60 alpha_helix caffeine; do
+  convert "$work/gallery/$scene".{advertisement,education,scientific,future,illustrative,technical}.png +append "$work/row_$scene.png"
+done
+convert "$work"/row_{gearbox,c60,alpha_helix,caffeine}.png -append -strip +dither -colors 255 png8:gallery.png
+
+# The assembly in three looks, large.
+for look in technical education advertisement; do
+  "$restyle" render gearbox -s "$look" -o "$work/gearbox_$look.png" --size 760x620 2>/dev/null
+done
+convert "$work"/gearbox_{technical,education,advertisement}.png +append -strip +dither -colors 255 png8:gearbox.png
 ls -l -- *.png
