@@ -106,8 +106,9 @@ impl MoleculeBuilder {
             name: atom.name,
             element: atom.element,
             alt_loc: atom.alt_loc,
-            b_factor: atom.b_factor,
-            charge: atom.charge,
+            // Numbers beyond single precision say nothing.
+            b_factor: if atom.b_factor.is_finite() { atom.b_factor } else { 0.0 },
+            charge: if atom.charge.is_finite() { atom.charge } else { 0.0 },
         });
         index
     }

@@ -139,6 +139,8 @@ note_kinds! {
     UnknownMaterial => "material" / "materials": "that no file describes, drawn in grey",
     /// An assembly was asked for, and the format has none.
     NoAssemblies => "assembly" / "assemblies": "asked for, which files of this format do not have: drawn as they are",
+    /// A model was asked for, and the format has none.
+    NoModels => "model" / "models": "asked for, which meshes do not have: drawn as they are",
     /// A picture on a surface.
     PictureNotDrawn => "picture" / "pictures": "on surfaces not drawn: plain colours are",
 }

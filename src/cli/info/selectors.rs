@@ -1,6 +1,6 @@
 //! Selectors for what a scene has, as lines of `mapping` to paste and to complete.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::facts::Facts;
 use super::text::{counted, grouped};
@@ -33,7 +33,12 @@ pub(super) fn lines(facts: &Facts) -> Vec<String> {
     let materials = summed(used.map(|material| (material.name.as_str(), material.parts as usize)));
     groups
         .push(materials.iter().map(|(name, of)| (selector("mesh", "material", name), counted(*of, "part"))).collect());
-    groups.push(facts.files.iter().map(|file| (selector("*", "file", &file.name), file.format.to_owned())).collect());
+    // Files of one name are one selector.
+    let mut files: Vec<(String, String)> =
+        facts.files.iter().map(|file| (selector("*", "file", &file.name), file.format.to_owned())).collect();
+    let mut seen = HashSet::new();
+    files.retain(|(selector, _)| seen.insert(selector.clone()));
+    groups.push(files);
     groups.iter().flat_map(|group| aligned(group)).collect()
 }
 

@@ -142,6 +142,9 @@ pub(super) fn read(
     if let Some(assembly) = options.assembly.as_ref().filter(|_| !has_assemblies) {
         report.note(NoteKind::NoAssemblies, None, || lines::quote(assembly.as_bytes()));
     }
+    if let (Content::Mesh(_), ModelChoice::Number(model)) = (&content, options.model) {
+        report.note(NoteKind::NoModels, None, || model.to_string());
+    }
     let (molecule, assembly) = match content {
         Content::Molecule(molecule) => (molecule, Assembly::default()),
         Content::Mesh(raw) => {

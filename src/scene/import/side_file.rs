@@ -53,9 +53,16 @@ impl Import<'_> {
             if !real.starts_with(root) {
                 return Ok(None);
             }
+            // A pipe would be waited for without end.
+            if !real.is_file() {
+                return Err(std::io::Error::other("it is no regular file"));
+            }
             let file = File::open(&real)?;
             let mut bytes = Vec::new();
-            file.take(MAX_BYTES).read_to_end(&mut bytes)?;
+            file.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
+            if bytes.len() as u64 > MAX_BYTES {
+                return Err(std::io::Error::other("it is larger than 2048 MiB"));
+            }
             Ok(Some((bytes, path.clone())))
         };
         match read() {

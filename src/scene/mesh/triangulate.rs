@@ -20,6 +20,8 @@ pub struct Triangulator {
     grid: Grid,
     /// Corners that were compared with ears.
     work: usize,
+    /// Comparisons of polygons that were given up.
+    wasted: usize,
 }
 
 /// Areas below this, in squares of the extent, are none.
@@ -27,6 +29,9 @@ const NO_AREA: f64 = 1e-15;
 
 /// Comparisons per corner after which a polygon is given up; spirals of 5000 corners need a quarter.
 const WORK_PER_CORNER: usize = 4000;
+/// The same once polygons that were given up have taken [`MOST_WASTED`] comparisons in one file: about half a second.
+const LEAST_WORK_PER_CORNER: usize = 40;
+const MOST_WASTED: usize = 100_000_000;
 
 /// How much is demanded of an ear; each is tried when no corner meets the one before.
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
@@ -112,7 +117,8 @@ impl Triangulator {
         }
         self.grid.fill(&self.points, &self.is_reflex);
         self.work = 0;
-        let limit = WORK_PER_CORNER * count as usize;
+        let per_corner = if self.wasted > MOST_WASTED { LEAST_WORK_PER_CORNER } else { WORK_PER_CORNER };
+        let limit = per_corner * count as usize;
         let (mut left, mut corner, mut demand, mut failures) = (count, 0, Demand::Empty, 0);
         while left > 3 {
             if self.work > limit {
@@ -143,6 +149,10 @@ impl Triangulator {
             }
         }
         triangles.push([self.previous[corner as usize], corner, self.next[corner as usize]]);
+        // Also what needs all kinds of ears crosses itself.
+        if demand == Demand::Any || self.work > limit {
+            self.wasted = self.wasted.saturating_add(self.work);
+        }
     }
 
     fn corner_area(&self, corner: u32) -> f64 {
