@@ -70,7 +70,7 @@ pub fn schema(catalog: &Catalog<'_>) -> Value {
         "$schema": "http://json-schema.org/draft-07/schema#",
         "$id": ID,
         "title": "restyle style",
-        "description": "How molecules are drawn. Everything is optional.",
+        "description": "How molecules and meshes are drawn. Everything is optional.",
         "allowComments": true,
         "allowTrailingCommas": true,
         "type": "object",
