@@ -338,3 +338,92 @@ fn tiles_are_the_picture() {
     let differing = values.iter().zip(&rows).filter(|(a, b)| a.abs_diff(**b) > 1).count();
     assert_eq!(differing, 0, "values that differ by more than 1");
 }
+
+/// A GLB of one tetrahedron that nodes place: each a column-major matrix and a name.
+fn glb(nodes: &[(&str, [f64; 16])]) -> Vec<u8> {
+    let corners: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.3, 0.0], [0.0, 0.0, 0.7]];
+    let triangles: [u16; 12] = [0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2];
+    let mut bin: Vec<u8> = corners.iter().flatten().flat_map(|value| value.to_le_bytes()).collect();
+    bin.extend(triangles.iter().flat_map(|index| index.to_le_bytes()));
+    let placed: Vec<String> =
+        nodes.iter().map(|(name, matrix)| format!(r#"{{"name":"{name}","mesh":0,"matrix":{matrix:?}}}"#)).collect();
+    let roots: Vec<String> = (0..nodes.len()).map(|index| index.to_string()).collect();
+    let mut json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[{}]}}],"nodes":[{}],
+            "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1}}]}}],
+            "accessors":[{{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1.3,0.7]}},
+                {{"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}}],
+            "bufferViews":[{{"buffer":0,"byteOffset":0,"byteLength":48}},{{"buffer":0,"byteOffset":48,"byteLength":24}}],
+            "buffers":[{{"byteLength":72}}]}}"#,
+        roots.join(","),
+        placed.join(",")
+    )
+    .into_bytes();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let mut glb = b"glTF".to_vec();
+    glb.extend([2, (12 + 8 + json.len() + 8 + bin.len()) as u32].iter().flat_map(|word| word.to_le_bytes()));
+    glb.extend((json.len() as u32).to_le_bytes());
+    glb.extend(b"JSON");
+    glb.extend(json);
+    glb.extend((bin.len() as u32).to_le_bytes());
+    glb.extend(b"BIN\0");
+    glb.extend(bin);
+    glb
+}
+
+/// Moved by `x` and `y`, with these scales: a negative one mirrors.
+fn placed(x: f64, y: f64, scale: [f64; 3]) -> [f64; 16] {
+    let [a, b, c] = scale;
+    [a, 0.0, 0.0, 0.0, 0.0, b, 0.0, 0.0, 0.0, 0.0, c, 0.0, x, y, 0.0, 1.0]
+}
+
+#[test]
+fn instances_mirrored_or_not_are_where_their_parts_are_and_hidden_ones_are_not() {
+    let nodes = [
+        ("one", placed(0.0, 0.0, [1.0, 1.0, 1.0])),
+        ("mirrored", placed(2.5, 0.2, [-1.0, 1.0, 1.2])),
+        ("hidden", placed(0.3, -1.6, [1.0, 1.0, 1.0])),
+        ("last", placed(1.6, -1.5, [0.8, 0.8, 1.5])),
+    ];
+    let style = r##"{"camera": {"bgcolor": "white"}, "mapping": {"mesh[part=hidden]": null, "mesh": "t"},
+        "shaders": [{"name": "t", "shader": "toon", "properties":
+            {"steps": 1, "base_color": "#00ff00", "color": "black", "hull_size": "9pt", "outline_bias": 0}}]}"##;
+    let Some(mut engine) = gpu::engine(&["C 0 0 0"], r#"{}"#) else { return };
+    engine.set_scene(Scene::from_bytes("test.glb", &glb(&nodes)).expect("a mesh"));
+    // A mapping for meshes alone is of no use to the atom that the engine begins with, so it comes second.
+    let source = restyle::config::Source::new("test.json", style);
+    let entries = restyle::engine::catalog();
+    let catalog = restyle::config::Catalog { shaders: &entries, kinds: restyle::engine::DRAWN_KINDS };
+    engine.set_style(restyle::config::load(&source, &catalog).unwrap_or_else(|mistakes| panic!("{mistakes}")));
+    let aovs = gpu::aovs(&mut engine, SIZE);
+    let image = gpu::still(&mut engine, SIZE, 1);
+    let camera = engine.camera(SIZE).expect("a camera");
+    let view = View::new(&camera, SIZE);
+    let assembly = &engine.scene().expect("a scene").assembly;
+    assert_eq!((assembly.parts.len(), assembly.shapes.len()), (4, 1), "one shape, placed four times");
+    let all = triangles(assembly, &camera);
+    // Four triangles a part, in the order of the parts.
+    let hidden = assembly.parts.iter().position(|part| assembly.names[part.name as usize] == "hidden").expect("a part");
+    let drawn: Vec<[DVec3; 3]> =
+        all.iter().enumerate().filter(|(index, _)| index / 4 != hidden).map(|(_, corners)| *corners).collect();
+    let (mut num_seen, mut wrong, mut num_lines) = (0, 0, 0);
+    for ((x, y), depth) in gpu::pixels(SIZE).zip(&aovs.depth) {
+        let ray = view.ray(center_px((x, y)));
+        match first(&drawn, ray, view.near) {
+            Some((_, t)) => {
+                num_seen += 1;
+                wrong += u32::from((f64::from(*depth) / t - 1.0).abs() > 1e-5);
+            }
+            None => {
+                wrong += u32::from(depth.is_finite());
+                num_lines += u32::from(image.pixel(x, y)[1] < 0.5);
+            }
+        }
+    }
+    eprintln!("{num_seen} pixels, {wrong} wrong, {num_lines} of outlines");
+    assert!(num_seen > 5_000 && wrong <= num_seen / 500, "{wrong} of {num_seen}");
+    // A shell that is wound the wrong way would cover its part or not be there.
+    let covered =
+        gpu::pixels(SIZE).zip(&aovs.depth).filter(|((x, y), depth)| depth.is_finite() && image.pixel(*x, *y)[1] < 0.5);
+    assert!(covered.count() < 40 && num_lines > 500, "{num_lines} pixels of outlines");
+}
