@@ -1,6 +1,6 @@
 //! `outlinePost`: lines of one width where depth jumps, where groups meet and where surfaces fold, found in the picture.
 //!
-//! After the contour, subunit and residue lines of [Goodsell2019]; how edges are placed within pixels and widened is ours:
+//! After the contour, subunit and residue lines of [Goodsell2019, throughout]; how edges are placed within pixels and widened is ours:
 //! see `shaders/effects/outline.wgsl`. Twin: `tests/twins/outline.rs`.
 
 use super::{EffectContext, EffectPass, PassTarget, PostEffect};

@@ -1,6 +1,6 @@
 //! Bonds of the residues that every protein, nucleic acid and crystal is made of, by the names of their atoms.
 //!
-//! Names and orders are those of [ChemComp]; older names of the same atoms stand beside them (`O1P`, `OT1`, `CD` of
+//! Names and orders are those of [ChemComp, throughout]; older names of the same atoms stand beside them (`O1P`, `OT1`, `CD` of
 //! isoleucine). Hydrogens are not listed: they belong to the nearest atom of their residue. Charged groups have one
 //! double bond (carboxylates, guanidinium, phosphates), rings alternate.
 

@@ -30,7 +30,7 @@ const NUCLEIC_OF_THREE: &[&str] = &[
 ];
 
 /// Amino acids that were changed after or while they joined the chain, other names that programs give them, and what
-/// caps a chain; three-letter names of [ChemComp].
+/// caps a chain; three-letter names of [ChemComp, throughout].
 const MODIFIED_AMINO: &[&str] = &[
     "MSE", "SEC", "PYL", "HYP", "SEP", "TPO", "PTR", "TYS", "CSO", "CSD", "CSX", "CME", "CSS", "OCS", "CAS", "CGU",
     "PCA", "KCX", "LLP", "MLY", "MLZ", "M3L", "ALY", "LYZ", "AGM", "FME", "NLE", "NVA", "ABA", "AIB", "ORN", "DAB",
@@ -39,7 +39,7 @@ const MODIFIED_AMINO: &[&str] = &[
     "ETA", "CYS2", "CYSH", "HISA", "HISB", "HISD", "HISE", "HISH", "HIS1", "HIS2", "LYSH", "ASPH", "GLUH", "ARGN",
 ];
 
-/// Nucleotides with changed bases or sugars [ChemComp].
+/// Nucleotides with changed bases or sugars [ChemComp, throughout].
 const MODIFIED_NUCLEIC: &[&str] = &[
     "PSU", "5MC", "5MU", "H2U", "4SU", "OMC", "OMG", "OMU", "A2M", "1MA", "2MA", "6MZ", "MA6", "MIA", "T6A", "1MG",
     "2MG", "7MG", "M2G", "G7M", "YYG", "YG", "QUO", "UR3", "3TD", "4OC", "5HU", "5BU", "5IU", "BRU", "CBR", "CBV",

@@ -1,4 +1,4 @@
-//! MOL2 files [Mol2]: sections of atoms, bonds and substructures, by words; several molecules are models.
+//! MOL2 files [Mol2, throughout]: sections of atoms, bonds and substructures, by words; several molecules are models.
 //!
 //! Sections are delimited, so that a count that is too small is mended; one that is too large tells of a file cut short
 //! and is refused. Elements come from SYBYL types (`C.ar`), else, with the types of force fields (`ca`), from the atom's

@@ -1,4 +1,4 @@
-//! SDF and MOL files [CTfile]: records of a name, two lines of remarks, and a table of atoms and bonds; here version V2000.
+//! SDF and MOL files [CTfile, throughout]: records of a name, two lines of remarks, and a table of atoms and bonds; here version V2000.
 //!
 //! Each record that has atoms is a model, numbered from 1. Its atoms are called by symbol and number (`C12`), its residue
 //! by the first word of its name, so that selectors can tell molecules and atoms apart. Aromatic bonds (type 4) become

@@ -1,4 +1,4 @@
-//! Tables of version V3000 [CTfile]: `M  V30` lines in blocks, continued after a hyphen.
+//! Tables of version V3000 [CTfile, throughout]: `M  V30` lines in blocks, continued after a hyphen.
 
 use super::Import;
 use super::lines::Lines;

@@ -112,7 +112,7 @@ impl Assembly {
     }
 }
 
-/// Octahedral coordinates of a unit vector, each in -1..1 [Cigolle2014].
+/// Octahedral coordinates of a unit vector, each in -1..1 [Cigolle2014, throughout].
 fn octahedral(v: Vec3) -> [f32; 2] {
     let sum = v.x.abs() + v.y.abs() + v.z.abs();
     let (x, y) = if sum > 0.0 { (v.x / sum, v.y / sum) } else { (0.0, 0.0) };

@@ -1,7 +1,7 @@
 //! The vertices that are drawn: one for each place, normal and colour.
 //!
 //! Where the file has no normal, the faces around a place fall into smooth groups, parted by edges sharper than the crease
-//! angle, and a group's normal is the mean of its faces', each weighted by its angle at the place [Thurmer1998].
+//! angle, and a group's normal is the mean of its faces', each weighted by its angle at the place [Thurmer1998, throughout].
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::Range;

@@ -1,6 +1,6 @@
 //! Encodings of binary columns: what bytes become numbers by.
 //!
-//! After [Sehnal2020]. Encodings are listed in the order in which they were
+//! After [Sehnal2020, throughout]. Encodings are listed in the order in which they were
 //! applied and undone from the last. Lengths in the file are never trusted: nothing grows beyond a limit that the caller
 //! derives from the size of the file.
 

@@ -1,6 +1,6 @@
 //! MessagePack: the small part of it that BinaryCIF is written in, read with limits.
 //!
-//! Format after [MessagePack]. Each entry of an array or map takes a byte at least, so that a count above the bytes
+//! Format after [MessagePack, throughout]. Each entry of an array or map takes a byte at least, so that a count above the bytes
 //! that are left is a lie; values nested deeper than any BinaryCIF file nests them are refused, which bounds the recursion.
 
 /// Depth of nesting. BinaryCIF needs 12: block, category, column, data, encodings and their own encodings.

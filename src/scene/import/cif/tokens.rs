@@ -1,6 +1,6 @@
 //! The words of a CIF text: names, values and reserved words, with the lines they stand on.
 //!
-//! Read as bytes, because comments and text may be in any encoding. Syntax after [Hall1991] (CIF 1.1): values are bare,
+//! Read as bytes, because comments and text may be in any encoding. Syntax after [Hall1991, throughout] (CIF 1.1): values are bare,
 //! quoted within a line, or text fields between lines that begin with `;`. A quote ends where white space follows it, so
 //! that `'O5'A'` is one value.
 

@@ -1,4 +1,4 @@
-//! glTF 2.0, as `.gltf` and `.glb` [Gltf2].
+//! glTF 2.0, as `.gltf` and `.glb` [Gltf2, throughout].
 //!
 //! Every pair of mesh and primitive that is placed is one shape, read once; every node that has it is a part. Read: triangles,
 //! strips and fans, sparse and quantised vertices, normals, the first set of colours, factors of materials. Mended and noted:

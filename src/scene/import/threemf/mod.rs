@@ -1,7 +1,7 @@
-//! 3MF: a zip archive with XML in it [ThreeMfCore].
+//! 3MF: a zip archive with XML in it [ThreeMfCore, throughout].
 //!
-//! The items of the build are placed with all components below them; `p:path` finds objects in other entries [ThreeMfProduction].
-//! An object's triangles are split by material; colour groups become colours of vertices [ThreeMfMaterials]. All lengths are
+//! The items of the build are placed with all components below them; `p:path` finds objects in other entries [ThreeMfProduction, throughout].
+//! An object's triangles are split by material; colour groups become colours of vertices [ThreeMfMaterials, throughout]. All lengths are
 //! turned into millimetres. Mended and noted: triangles without three finite vertices, objects that do not exist, transforms
 //! that are no numbers.
 //!
@@ -94,7 +94,7 @@ fn read_package(bytes: &[u8], report: &mut Report) -> Result<RawMesh, String> {
 }
 
 impl Package<'_, '_> {
-    /// The path of the main model: what the archive's relations say, else any model [Opc].
+    /// The path of the main model: what the archive's relations say, else any model [Opc, throughout].
     fn root_path(&mut self) -> Result<String, String> {
         let mut found = None;
         if let Some(entry) = self.archive.entry("_rels/.rels")? {
