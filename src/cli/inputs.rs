@@ -1,5 +1,6 @@
 //! Scenes, styles and sizes as the command line names them.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -242,7 +243,7 @@ fn unknown_reason(what: &str, name: &str, among: &[&'static [Shipped]]) -> Strin
 /// Refuses outputs that would overwrite an input or one another. Devices and pipes take more than one.
 pub(crate) fn check_outputs(outputs: impl Iterator<Item = PathBuf>, inputs: &[(&str, &Path)]) -> Result<(), Failure> {
     let inputs: Vec<_> = inputs.iter().map(|(what, path)| (*what, place(path))).collect();
-    let mut former: Vec<PathBuf> = Vec::new();
+    let mut former: HashSet<PathBuf> = HashSet::new();
     for output in outputs {
         if output.exists() && !output.is_file() {
             continue;
@@ -251,10 +252,9 @@ pub(crate) fn check_outputs(outputs: impl Iterator<Item = PathBuf>, inputs: &[(&
         if let Some((what, _)) = inputs.iter().find(|(_, input)| *input == output) {
             return Err(Failure::usage(format!("{shown}: is the {what} itself; write to another file")));
         }
-        if former.contains(&output) {
+        if !former.insert(output) {
             return Err(Failure::usage(format!("{shown}: is named for two outputs; write each to its own file")));
         }
-        former.push(output);
     }
     Ok(())
 }

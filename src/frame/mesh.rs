@@ -84,6 +84,9 @@ impl MeshPart {
 /// Triangles on a page of ids: `MESH_PAGE_BITS` in `shaders/lib/mesh.wgsl`.
 const PAGE: u64 = 1 << 8;
 
+/// Indices that are on their way at once: 3/4 MiB.
+const TRIANGLES_AT_ONCE: usize = 1 << 16;
+
 /// Ids have 29 bits for the index.
 const MOST_IDS: u64 = 1 << 29;
 
@@ -275,14 +278,15 @@ impl MeshBuffers {
         let assembly = &scene.assembly;
         check(gpu, scene, parts)?;
         let is_drawn = |part: u32| parts.get(part as usize).is_some_and(Option::is_some);
-        if !Weak::ptr_eq(&self.scene, &Arc::downgrade(scene)) {
-            let layout = Layout::new(assembly);
+        // All that can fail comes before anything is replaced.
+        let layout = (!Weak::ptr_eq(&self.scene, &Arc::downgrade(scene))).then(|| Layout::new(assembly));
+        let draws = Draws::new(layout.as_ref().unwrap_or(&self.layout), assembly, is_drawn)?;
+        if let Some(layout) = layout {
             self.draws = Draws::default();
             self.upload(gpu, assembly, &layout);
             self.layout = layout;
             self.scene = Arc::downgrade(scene);
         }
-        let draws = Draws::new(&self.layout, assembly, is_drawn)?;
         let hidden = <MeshPart as bytemuck::Zeroable>::zeroed();
         let rows: Vec<MeshPart> = self
             .layout
@@ -312,7 +316,7 @@ impl MeshBuffers {
         let mut triangles = self.triangles.writer(gpu, layout.num_triangles);
         let size = (layout.num_triangles * 12).max(16);
         let buffer = gpu.empty_buffer("mesh indices", size, wgpu::BufferUsages::INDEX | wgpu::BufferUsages::COPY_DST);
-        let mut first_vertex = 0u32;
+        let (mut first_vertex, mut pending) = (0u32, 0);
         for (number, placed) in layout.shapes.iter().enumerate() {
             let shape = &assembly.shapes[placed.shape as usize];
             // Vertices of single places know their part; a shared shape has one part for each run.
@@ -329,14 +333,19 @@ impl MeshBuffers {
                 }));
             }
             let mut offset = u64::from(placed.first_triangle) * 12;
-            for chunk in shape.triangles.chunks(1 << 16) {
+            for chunk in shape.triangles.chunks(TRIANGLES_AT_ONCE) {
                 let moved: Vec<[u32; 3]> = chunk.iter().map(|triangle| triangle.map(|v| v + first_vertex)).collect();
                 for [a, b, c] in &moved {
                     triangles.push(bytemuck::bytes_of(&[*a, *b, *c, part]));
                 }
                 gpu.write_buffer(&buffer, offset, bytemuck::cast_slice(&moved));
                 offset += moved.len() as u64 * 12;
-                gpu.flush_writes();
+                pending += moved.len();
+                // Small shapes go together.
+                if pending >= TRIANGLES_AT_ONCE {
+                    gpu.flush_writes();
+                    pending = 0;
+                }
             }
             first_vertex += shape.positions.len() as u32;
         }
@@ -359,13 +368,6 @@ impl MeshBuffers {
     /// Triangles that are drawn, those of hidden parts not counted.
     pub fn num_triangles(&self) -> u64 {
         self.draws.num_triangles
-    }
-
-    /// Bytes on the device.
-    pub fn bytes(&self) -> u64 {
-        let textures = [&self.vertices, &self.triangles, &self.parts, &self.runs, &self.pages];
-        textures.iter().map(|texture| texture.bytes()).sum::<u64>()
-            + self.indices.as_ref().map_or(0, wgpu::Buffer::size)
     }
 }
 

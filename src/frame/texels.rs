@@ -88,11 +88,6 @@ impl KeptTexture {
         self.row_hashes.clear();
         TexelWriter { gpu, texture: self.texture.as_ref().map(|(texture, _)| texture), row: 0, pending: Vec::new() }
     }
-
-    /// Bytes on the device.
-    pub fn bytes(&self) -> u64 {
-        self.texture.as_ref().map_or(0, |(texture, _)| u64::from(texture.height()) * ROW_BYTES as u64)
-    }
 }
 
 /// Rows of a changed content that are written at once, so that copies on their way do not pile up: 8 MiB.

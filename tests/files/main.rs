@@ -1,5 +1,6 @@
 //! Files as users have them: molecules, styles, and what is said of those that do not load.
 
+mod outcome;
 mod scene_cif;
 mod scene_data;
 mod scene_gltf;

@@ -5,6 +5,8 @@
 use restyle::scene::{LoadOptions, ModelChoice, NoteKind, Scene, SceneError};
 use std::path::PathBuf;
 
+use super::outcome::Outcome;
+
 /// A folder of the test data, or `None` if there is none and none is required.
 pub fn data(folder: &str) -> Option<PathBuf> {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(folder);
@@ -54,16 +56,8 @@ const MOLECULES: &[(&str, usize, usize, usize)] = &[
     ("testosterone.xyz", 46, 46, 49),
 ];
 
-/// What a damaged file gives.
-enum Outcome {
-    /// Atoms drawn, and the only kinds of notes.
-    Loads(usize, &'static [NoteKind]),
-    /// The end of the message, after the file's path.
-    Fails(&'static str),
-}
-
 #[rustfmt::skip]
-fn bad_files() -> Vec<(&'static str, Outcome)> {
+fn bad_files() -> Vec<(&'static str, Outcome<usize>)> {
     use NoteKind as K;
     use Outcome::{Fails, Loads};
     vec![
@@ -135,25 +129,7 @@ fn every_damaged_file_is_mended_or_refused_as_promised() {
     assert_complete(&folder, &table.iter().map(|row| row.0).collect::<Vec<_>>());
     for (file, outcome) in table {
         let path = folder.join(file);
-        match (Scene::load(&path), outcome) {
-            (Ok(scene), Outcome::Loads(num_atoms, kinds)) => {
-                assert_eq!(scene.molecule.atoms.len(), num_atoms, "{file}");
-                let noted: Vec<NoteKind> =
-                    NoteKind::ALL.iter().copied().filter(|&kind| scene.files[0].report.count(kind) > 0).collect();
-                let mut expected = kinds.to_vec();
-                expected.sort_unstable();
-                assert_eq!(noted, expected, "{file}: {}", scene.files[0].report);
-                let sphere = scene.molecule.bounding_sphere();
-                assert!(sphere.radius.is_finite() && sphere.center.is_finite(), "{file}");
-            }
-            (Err(error), Outcome::Fails(end)) => {
-                assert_eq!(error.to_string(), format!("{}{end}", path.display()));
-            }
-            (Ok(scene), Outcome::Fails(_)) => {
-                panic!("{file} gives {} atoms", scene.molecule.atoms.len());
-            }
-            (Err(error), Outcome::Loads(..)) => panic!("{error}"),
-        }
+        outcome.check(&path, |scene| scene.molecule.atoms.len(), |_| true);
     }
 }
 
@@ -215,17 +191,3 @@ fn every_file_loads_or_is_refused_with_a_message() {
     }
     assert!(num_loaded > 150 && num_refused > 30, "{num_loaded} loaded, {num_refused} refused");
 }
-
-/// Triangles of a file that are left out since they have no area or are there already.
-pub fn num_dropped(report: &restyle::scene::Report) -> u64 {
-    u64::from(report.count(NoteKind::FlatTriangle) + report.count(NoteKind::RepeatedTriangle))
-}
-
-/// Notes of mending, which depend on a mesh and not on its format.
-pub const MENDED: &[NoteKind] = &[
-    NoteKind::FlatTriangle,
-    NoteKind::RepeatedTriangle,
-    NoteKind::NearlyWelded,
-    NoteKind::FaceTurned,
-    NoteKind::InsideOut,
-];

@@ -6,7 +6,7 @@ use restyle::scene::{NoteKind, Scene, SceneError};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use super::scene_data::num_dropped;
+use super::outcome::{Outcome, num_triangles};
 
 /// A folder of the test data, or `None` if there is none and none is required.
 fn data(folder: &str) -> Option<PathBuf> {
@@ -56,16 +56,8 @@ const MESHES: &[(&str, u64, usize, usize, usize)] = &[
     ("Wuson.off", 3732, 1, 1, 0),
 ];
 
-/// What a damaged file gives.
-enum Outcome {
-    /// Triangles, and the kinds of notes that the importer makes.
-    Loads(u64, &'static [NoteKind]),
-    /// The end of the message, after the file's path.
-    Fails(&'static str),
-}
-
 #[rustfmt::skip]
-fn bad_files() -> Vec<(&'static str, Outcome)> {
+fn bad_files() -> Vec<(&'static str, Outcome<u64>)> {
     use NoteKind as K;
     use Outcome::{Fails, Loads};
     const WHOLE: &[K] = &[];
@@ -191,10 +183,10 @@ fn assert_complete(folder: &Path, table: &[&str]) {
 fn every_real_mesh_has_the_triangles_of_its_row() {
     let Some(folder) = data("meshes") else { return };
     assert_complete(&folder, &MESHES.iter().map(|row| row.0).collect::<Vec<_>>());
-    for &(file, num_triangles, num_parts, num_names, num_materials) in MESHES {
-        let Scene { assembly, files, .. } = load(&folder.join(file));
-        let report = &files[0].report;
-        assert_eq!(assembly.num_triangles() + num_dropped(report), num_triangles, "{file}: {report}");
+    for &(file, expected, num_parts, num_names, num_materials) in MESHES {
+        let scene = load(&folder.join(file));
+        let assembly = &scene.assembly;
+        assert_eq!(num_triangles(&scene), expected, "{file}: {}", scene.files[0].report);
         let names: BTreeSet<&str> =
             assembly.parts.iter().map(|part| assembly.names[part.name as usize].as_str()).collect();
         assert_eq!(
@@ -214,19 +206,7 @@ fn every_damaged_mesh_is_mended_or_refused_as_promised() {
     assert_complete(&folder, &table.iter().map(|row| row.0).collect::<Vec<_>>());
     for (file, outcome) in table {
         let path = folder.join(file);
-        match (Scene::load(&path), outcome) {
-            (Ok(scene), Outcome::Loads(num_triangles, kinds)) => {
-                let report = &scene.files[0].report;
-                assert_eq!(scene.assembly.num_triangles() + num_dropped(report), num_triangles, "{file}: {report}");
-                let noted: Vec<NoteKind> = OURS.iter().copied().filter(|&kind| report.count(kind) > 0).collect();
-                assert_eq!(noted, kinds, "{file}: {report}");
-                let sphere = scene.bounding_sphere();
-                assert!(sphere.radius.is_finite() && sphere.center.is_finite(), "{file}");
-            }
-            (Err(error), Outcome::Fails(end)) => assert_eq!(error.to_string(), format!("{}{end}", path.display())),
-            (Ok(scene), Outcome::Fails(_)) => panic!("{file} gives {} triangles", scene.assembly.num_triangles()),
-            (Err(error), Outcome::Loads(..)) => panic!("{error}"),
-        }
+        outcome.check(&path, num_triangles, |kind| OURS.contains(&kind));
     }
 }
 
