@@ -44,6 +44,8 @@ const NOWHERE: f32 = 1e30;
 const LEAST_STEP_PX: f32 = 1.0;
 // Half of the longest way between two crossings of an edge with the lines through pixel centres.
 const HALF_SEGMENT_PX: f32 = 0.71;
+// How far in front of an edge a pixel counts as beyond it: what a direction of 6 bits and a bent edge may be off by.
+const BEYOND_SLACK_PX: f32 = 0.25;
 // A seed holds radii below this, in eighths of a pixel.
 const MOST_RADIUS: f32 = 63.0;
 
@@ -367,7 +369,9 @@ fn add_seed(before: Cover, seed: vec2<u32>, at: vec2<i32>, step: vec2<i32>, own:
     near.in_front = (first && near.side == SIDE_FIRST) || (second && near.side == SIDE_SECOND);
     // Where surfaces meet, both come forward from there, as steeply as 2.
     let slack = select(0.0, (2.0 * near.distance + 2.0) * near.pixel, near.side == SIDE_BOTH);
-    near.covered = near.in_front || depth > covers_beyond - slack;
+    // What goes on from the edge to the side in front is not behind it, however deep it comes to lie.
+    let beyond = near.side == SIDE_BOTH || first || second || near.signed_distance > -BEYOND_SLACK_PX;
+    near.covered = near.in_front || (beyond && depth > covers_beyond - slack);
 
     var cover = before;
     var most = 0.0;

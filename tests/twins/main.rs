@@ -7,6 +7,7 @@ mod environment;
 mod furnace;
 mod gpu;
 mod impostors;
+mod mesh_lines;
 mod meshes;
 mod outline;
 mod outline_truth;

@@ -12,7 +12,7 @@ const MESH: u32 = 3;
 const SIZE: [u32; 2] = [320, 240];
 
 /// A closed solid as an STL text: its facets by their corners.
-fn stl(facets: &[[DVec3; 3]]) -> String {
+pub fn stl(facets: &[[DVec3; 3]]) -> String {
     let corner = |p: &DVec3| format!("vertex {} {} {}\n", p.x, p.y, p.z);
     let facet = |corners: &[DVec3; 3]| {
         let vertices: String = corners.iter().map(corner).collect();
@@ -90,7 +90,7 @@ fn triangles(assembly: &Assembly, camera: &Camera) -> Vec<[DVec3; 3]> {
 }
 
 /// Where a ray meets a triangle: depth, and the smallest share of its three corners.
-fn crossing(ray: Ray, [a, b, c]: [DVec3; 3]) -> Option<(f64, f64)> {
+pub fn crossing(ray: Ray, [a, b, c]: [DVec3; 3]) -> Option<(f64, f64)> {
     let (along_b, along_c) = (b - a, c - a);
     let normal = along_b.cross(along_c);
     let facing = ray.direction.dot(normal);
@@ -257,7 +257,7 @@ fn a_box_throws_the_shadow_that_rays_find() {
 }
 
 /// Groups of neighbouring pixels that fulfil a condition; with corners as neighbours where `diagonal`.
-fn components(size: [u32; 2], diagonal: bool, is_in: impl Fn(u32, u32) -> bool) -> usize {
+pub fn components(size: [u32; 2], diagonal: bool, is_in: impl Fn(u32, u32) -> bool) -> usize {
     let [width, height] = size;
     let mut seen = vec![false; (width * height) as usize];
     let mut count = 0;

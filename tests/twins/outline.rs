@@ -34,6 +34,7 @@ pub struct Params {
 
 const NOWHERE: f64 = 1e30;
 const HALF_SEGMENT_PX: f64 = 0.71;
+const BEYOND_SLACK_PX: f64 = 0.25;
 const CREASE: u32 = 1;
 const BOUNDARY: u32 = 2;
 const SILHOUETTE: u32 = 4;
@@ -221,11 +222,13 @@ fn add_seed(view: &View, params: &Params, cover: &mut Cover, seed: &Seed, from: 
     let (first, second) = (from == DVec2::ZERO, from == step);
     let in_front = first && seed.side == Side::First || second && seed.side == Side::Second;
     let slack = if seed.side == Side::Both { (2.0 * distance + 2.0) * pixel_world(view, seed.depth) } else { 0.0 };
+    let beyond = seed.side == Side::Both || first || second || signed > -BEYOND_SLACK_PX;
+    let covered = in_front || beyond && depth > seed.depth - slack;
     let footprint = params.footprint_px;
     let mut most = 0.0f64;
     for (kind, line) in cover.lines.iter_mut().enumerate() {
         let width = params.width_px[kind];
-        if seed.kinds >> kind & 1 == 0 || width <= 0.0 || !(in_front || depth > seed.depth - slack) {
+        if seed.kinds >> kind & 1 == 0 || width <= 0.0 || !covered {
             continue;
         }
         let fade_from = if seed.outermost { 0.5 } else { 2.0 * width.clamp(0.01, 2.0) };
@@ -403,6 +406,19 @@ fn a_grazing_plane_gets_no_line_and_its_groups_a_boundary() {
         assert!(slope > 1.0 || (sum(1) - 2.0).abs() < 1e-9, "slope {slope}: {} px", sum(1));
         assert!(sum(1) > 0.9, "slope {slope}: {} px", sum(1));
     }
+}
+
+#[test]
+fn a_steep_surface_that_is_in_front_stays_clear() {
+    // It comes forward to the step, more steeply than the line is wide.
+    let normal = DVec3::new(-40.0, 0.0, 1.0).normalize();
+    let steep = move |at: DVec2| flat(1, 0, 1000.0 - 40.0 * (at.x - 80.0), normal);
+    let seen = halves(steep, |_| flat(2, 0, 5000.0, DVec3::Z));
+    let covers = covers(&unit_view(), &params([0.0, 0.0, 6.0], 5.0), SIZE, &seen);
+    let row = &covers[60 * 160..61 * 160];
+    assert!(row[..79].iter().all(|cover| cover.lines == [0.0; 3]), "{:?}", &row[70..80]);
+    let covered: f64 = row.iter().map(|cover| cover.lines[2]).sum();
+    assert!((covered - 6.0).abs() < 0.5, "{covered} px");
 }
 
 #[test]
