@@ -65,6 +65,11 @@ impl Args {
         &self.scenes
     }
 
+    /// Width and height of the picture.
+    pub(super) fn size(&self) -> [u32; 2] {
+        self.size.0
+    }
+
     /// The style's file or name.
     pub(super) fn style(&self) -> &str {
         &self.style
@@ -123,6 +128,8 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     if args.output.is_none() && args.aov.is_empty() && !args.json {
         return Err(Failure::usage("nothing to write: give -o OUT.png, --aov NAME=FILE.exr or --json"));
     }
+    args.output.iter().try_for_each(|output| check_format(output, "png"))?;
+    args.aov.iter().try_for_each(|(_, output)| check_format(output, "exr"))?;
     args.outputs().try_for_each(|output| check_writable(&output))?;
     let scenes = args.scenes.iter().map(|scene| ("scene", Path::new(scene)));
     let given: Vec<_> = scenes.chain([("style", Path::new(&args.style))]).collect();
@@ -148,7 +155,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let gpu = Arc::new(gpu?);
     inputs::print_warnings(&style, &loaded.scene, &args.scenes);
     let mut engine = Engine::new(gpu, loaded.scene, style);
-    for limit in engine.limits_exceeded() {
+    for limit in engine.limits_exceeded(args.size.0) {
         tell(format!("{}: warning: {limit}", args.style));
     }
     if let Some(count) = args.turntable {
@@ -350,6 +357,25 @@ fn peak_rss_mb() -> Option<f64> {
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     let kib: f64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;
     Some(rounded(kib / 1024.0))
+}
+
+/// Extensions of formats that other programs write.
+const OTHER_FORMATS: &[&str] = &[
+    "png", "apng", "jpg", "jpeg", "jxl", "webp", "avif", "heic", "gif", "bmp", "tga", "tif", "tiff", "ppm", "exr",
+    "hdr", "svg", "pdf", "eps", "psd", "mp4", "mov", "webm", "avi", "mkv",
+];
+
+/// Refuses a name that promises another format than what is written.
+fn check_format(path: &Path, written: &str) -> Result<(), Failure> {
+    let Some(extension) = path.extension().and_then(|extension| extension.to_str()) else { return Ok(()) };
+    let extension = extension.to_ascii_lowercase();
+    if extension == written || !OTHER_FORMATS.contains(&extension.as_str()) {
+        return Ok(());
+    }
+    let (shown, named) = (path.display(), path.with_extension(written));
+    let what = if written == "png" { "pictures are written as PNG" } else { "AOVs are written as OpenEXR" };
+    let named = named.display();
+    Err(Failure::usage(format!("{shown}: {what}, not as {}; write to {named}", extension.to_uppercase())))
 }
 
 /// Refuses what cannot be written before any work is done.

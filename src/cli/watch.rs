@@ -93,7 +93,7 @@ fn tell_warnings(engine: &Engine, args: &Args, told: &mut Vec<String>) {
     let (Some(style), Some(scene)) = (engine.style(), engine.scene()) else { return };
     let mut warnings = inputs::style_warnings(style);
     warnings.extend(inputs::scene_warnings(scene, args.scenes()).iter().map(clean));
-    let limits = engine.limits_exceeded();
+    let limits = engine.limits_exceeded(args.size());
     warnings.extend(limits.iter().map(|limit| clean(format!("{}: warning: {limit}", args.style()))));
     warnings.iter().filter(|warning| !told.contains(warning)).for_each(|warning| print_message(warning));
     *told = warnings;

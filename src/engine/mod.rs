@@ -321,8 +321,8 @@ impl Engine {
         self.renderer.target_bytes()
     }
 
-    /// What the style asks of lights that a frame does not do, in plain words.
-    pub fn limits_exceeded(&self) -> Vec<String> {
+    /// What the style asks of lights that a frame does not do, and what a picture of this size cannot show, in plain words.
+    pub fn limits_exceeded(&self, size: [u32; 2]) -> Vec<String> {
         let Some(style) = self.style() else { return Vec::new() };
         let lights: Vec<_> = style.lights.iter().filter(|light| light.kind != LightKind::Ambient).collect();
         let mut exceeded = Vec::new();
@@ -347,6 +347,13 @@ impl Engine {
                 "{casting} lights cast shadows; only the shadows of the first {} are drawn",
                 frame::MAX_SHADOWS
             ));
+        }
+        if self.content.as_ref().is_some_and(|content| content.camera.sees_edge_on(&content.scene, size)) {
+            exceeded.push(
+                "the scene lies flat and is seen from its edge, as a line thinner than a pixel; turn it with \"camera\": \
+                 { \"orient\": \"principal\" } or give another \"position\""
+                    .to_owned(),
+            );
         }
         exceeded
     }

@@ -47,6 +47,30 @@ impl CameraProvider {
         self.style.exposure.exp2() as f32
     }
 
+    /// Whether meshes are all of the scene and lie flat, and their picture of this size is a line of less than a pixel.
+    pub fn sees_edge_on(&self, scene: &Scene, size_px: [u32; 2]) -> bool {
+        if scene.assembly.is_empty() || !scene.molecule.atoms.is_empty() {
+            return false;
+        }
+        let camera = self.camera(size_px);
+        let size = Vec2::new(size_px[0] as f32, size_px[1] as f32);
+        let in_picture = |position: Vec3| {
+            let place = camera.view_from_world.transform_point3(position);
+            let depth = if camera.orthographic { 1.0 } else { (-place.z).max(camera.near) };
+            place.truncate() / depth / camera.half_extent * 0.5 * size
+        };
+        let mut places = vertices(scene, MOST_VERTICES).map(in_picture);
+        let Some(first) = places.next() else { return false };
+        let places: Vec<Vec2> = places.map(|place| place - first).collect();
+        let along = places.iter().copied().fold(Vec2::ZERO, |a, b| if b.length() > a.length() { b } else { a });
+        let across = along.perp().normalize_or_zero();
+        let sides = places
+            .iter()
+            .map(|place| place.dot(across))
+            .fold((0.0f32, 0.0f32), |(low, high), side| (low.min(side), high.max(side)));
+        sides.1 - sides.0 < 1.0
+    }
+
     /// The camera for a picture of this size.
     pub fn camera(&self, size_px: [u32; 2]) -> Camera {
         self.turned(size_px, 0.0)

@@ -27,7 +27,7 @@ fn wrong_command_lines_say_what_would_be_right() {
         ("render c60 --aov depht=a.exr", "there are depth, normal, id, color"),
         ("render c60 --aov depth=", "the file name is missing"),
         ("render c60 --aov depth", "NAME=FILE.exr"),
-        ("render c60 -o a.png --aov depth=a.png", "a.png: is named for two outputs"),
+        ("render c60 -o a --aov depth=a", "a: is named for two outputs"),
         ("render c60 --aov depth=a.exr --aov normal=./a.exr", "a.exr: is named for two outputs"),
         ("info", "<SCENE>"),
         ("gallery --samples 0", "0 is not in 1..=1024"),

@@ -19,6 +19,18 @@ fn outputs_without_a_place_are_refused_before_any_work() {
 }
 
 #[test]
+fn a_name_of_another_format_is_refused() {
+    let folder = Folder::new("formats");
+    folder.run("render c60 -o a.jpg").refused(2, "a.jpg: pictures are written as PNG, not as JPG; write to a.png");
+    folder.run("render c60 -o a.EXR").refused(2, "a.EXR: pictures are written as PNG, not as EXR");
+    folder
+        .run("render c60 --aov depth=d.png")
+        .refused(2, "d.png: AOVs are written as OpenEXR, not as PNG; write to d.exr");
+    folder.run("render c60 -o t.mp4 --turntable 3").refused(2, "t.mp4: pictures are written as PNG, not as MP4");
+    assert!(folder.names().is_empty());
+}
+
+#[test]
 fn inputs_are_never_overwritten() {
     let folder = Folder::new("inputs");
     folder.write("me.xyz", ATOM).write("base.json", "{}").write("me.json", "{\"extends\":\"base.json\"}");

@@ -1,6 +1,6 @@
 //! Molecule files that are wrong: exit code 1, one line with the file, its line where there is one, and a way out.
 
-use super::rig::Folder;
+use super::rig::{Folder, Picture};
 
 #[test]
 fn wrong_molecules_are_named_with_their_line() {
@@ -73,4 +73,17 @@ fn links_in_a_circle_lead_nowhere() {
     std::os::unix::fs::symlink("a.xyz", folder.path("b.xyz")).unwrap();
     folder.draw("a.xyz").refused(1, "a.xyz");
     folder.draw("c60 -s a.xyz").refused(1, "a.xyz");
+}
+
+#[test]
+fn a_flat_scene_seen_from_its_edge_is_told() {
+    let Some(folder) = Folder::with_adapter("edge") else { return };
+    folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3 4\n");
+    folder.write("turned.json", r#"{ "camera": { "orient": "principal" } }"#);
+    let words = "the scene lies flat and is seen from its edge";
+    let outcome = folder.draw("flat.obj").done();
+    assert!(outcome.messages().iter().any(|line| line.contains(words)), "{:?}", outcome.messages());
+    let outcome = folder.draw("flat.obj -s turned.json").done();
+    assert!(!outcome.messages().iter().any(|line| line.contains(words)), "{:?}", outcome.messages());
+    assert!(Picture::read(&folder, "out.png").num_colors() > 1);
 }

@@ -24,7 +24,11 @@ impl Import<'_> {
             return refused("is not part of this file, and nothing beside it is read");
         };
         if reference.contains("://") {
-            return refused("is a network address, which is not followed");
+            let is_local = reference.trim_start().to_ascii_lowercase().starts_with("file:");
+            return refused(match is_local {
+                true => "is an address of this machine's disk, which is not followed; name it by a relative path",
+                false => "is a network address, which is not followed",
+            });
         }
         // Files from other systems write their separators.
         let reference = reference.trim().replace('\\', "/");
