@@ -4,7 +4,6 @@
 //! pass draws what a light sees, into shadow maps.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 use super::mesh::MeshDraw;
 use super::objects::ObjectBuffers;
@@ -22,10 +21,6 @@ pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// Bytes between two views in the view buffer: WebGPU's alignment of dynamic offsets.
 const VIEW_STRIDE: u64 = 256;
-
-/// Quads that a software adapter gets in one pass. It keeps the triangles of a pass, some 500 bytes each, until the pass
-/// ends: 4v5a took 64 MB more in one pass, and a tenth more time.
-const SOFTWARE_QUADS_PER_PASS: u32 = 4096;
 
 /// What a visibility pipeline is built for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -66,7 +61,6 @@ pub struct Visibility {
     pub layout: wgpu::BindGroupLayout,
     /// Whether the device numbers the triangles of a draw.
     numbered: bool,
-    quads_per_pass: u32,
     pipelines: BTreeMap<(Kind, VisibilityKey), wgpu::RenderPipeline>,
 }
 
@@ -175,13 +169,7 @@ impl Visibility {
                 objects(10),
             ],
         });
-        let is_software = gpu.info.device_type == wgpu::DeviceType::Cpu;
-        Visibility {
-            layout,
-            numbered: gpu.numbers_triangles(),
-            quads_per_pass: if is_software { SOFTWARE_QUADS_PER_PASS } else { u32::MAX },
-            pipelines: BTreeMap::new(),
-        }
+        Visibility { layout, numbered: gpu.numbers_triangles(), pipelines: BTreeMap::new() }
     }
 
     /// Binds objects, materials and the views of one eye; `reach` is what outlines add to the objects there. The order
@@ -257,12 +245,7 @@ impl Visibility {
     /// # Errors
     /// [`GpuError::Driver`] where a shader does not compile.
     pub fn rebuilt(&self, gpu: &Gpu) -> Result<Visibility, GpuError> {
-        let mut fresh = Visibility {
-            layout: self.layout.clone(),
-            numbered: self.numbered,
-            quads_per_pass: self.quads_per_pass,
-            pipelines: BTreeMap::new(),
-        };
+        let mut fresh = Visibility { layout: self.layout.clone(), numbered: self.numbered, pipelines: BTreeMap::new() };
         for &(kind, key) in self.pipelines.keys() {
             let pipeline = fresh.build(gpu, kind, key)?;
             fresh.pipelines.insert((kind, key), pipeline);
@@ -338,53 +321,44 @@ impl Visibility {
         to: &VisibilityPass<'_>,
         timer: &mut Option<PassTimer>,
     ) {
-        let pieces = pieces(bindings.num_drawn, self.quads_per_pass);
-        for (index, piece) in pieces.iter().enumerate() {
-            let (is_first, is_last) = (index == 0, index + 1 == pieces.len());
-            let (clear_id, clear_depth) = match is_first {
-                true => (wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), wgpu::LoadOp::Clear(0.0)),
-                false => (wgpu::LoadOp::Load, wgpu::LoadOp::Load),
-            };
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some(to.name),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: to.ids,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations { load: clear_id, store: wgpu::StoreOp::Store },
-                })],
-                depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                    view: to.depth,
-                    depth_ops: Some(wgpu::Operations { load: clear_depth, store: wgpu::StoreOp::Store }),
-                    stencil_ops: None,
-                }),
-                timestamp_writes: timer.as_mut().and_then(|timer| timer.piece(to.name, is_first, is_last)),
-                occlusion_query_set: None,
-                multiview_mask: None,
-            });
-            pass.set_bind_group(0, &bindings.group, &[SceneBindings::offset(to.view)]);
-            // The viewport is that of the whole picture, so that triangles fall on the same pixels in every tile.
-            let ([x, y], [width, height]) = (to.seen.tile_origin_px, to.seen.size_px);
-            if to.seen.tile_size_px != to.seen.size_px {
-                pass.set_viewport(-x, -y, width, height, 0.0, 1.0);
-            }
-            for (kind, range) in piece {
-                if let Some(pipeline) = self.pipelines.get(&(*kind, to.key)) {
-                    pass.set_pipeline(pipeline);
-                    pass.draw(0..4, range.clone());
-                }
-            }
-            if is_last {
-                self.draw_meshes(&mut pass, objects, to.key);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some(to.name),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: to.ids,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: to.depth,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            timestamp_writes: timer.as_mut().and_then(|timer| timer.pass(to.name)),
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        pass.set_bind_group(0, &bindings.group, &[SceneBindings::offset(to.view)]);
+        // The viewport is that of the whole picture, so that triangles fall on the same pixels in every tile.
+        let ([x, y], [width, height]) = (to.seen.tile_origin_px, to.seen.size_px);
+        if to.seen.tile_size_px != to.seen.size_px {
+            pass.set_viewport(-x, -y, width, height, 0.0, 1.0);
+        }
+        for (kind, count) in [Kind::Atom, Kind::Connector].into_iter().zip(bindings.num_drawn) {
+            if count > 0
+                && let Some(pipeline) = self.pipelines.get(&(kind, to.key))
+            {
+                pass.set_pipeline(pipeline);
+                pass.draw(0..4, 0..count);
             }
         }
-    }
-
-    fn draw_meshes(&self, pass: &mut wgpu::RenderPass<'_>, objects: &ObjectBuffers, key: VisibilityKey) {
         let Some((draws, indices)) = objects.meshes.draws() else { return };
         pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
         let mut draw_all = |kind: Kind, is_drawn: &dyn Fn(&MeshDraw) -> bool| {
-            let Some(pipeline) = self.pipelines.get(&(kind, key)) else { return };
+            let Some(pipeline) = self.pipelines.get(&(kind, to.key)) else { return };
             pass.set_pipeline(pipeline);
             for draw in draws.iter().filter(|draw| is_drawn(draw)) {
                 if self.numbered {
@@ -396,34 +370,12 @@ impl Visibility {
             }
         };
         draw_all(Kind::Mesh, &|_| true);
-        if key.hulls {
+        if to.key.hulls {
             for mirrored in [false, true] {
                 draw_all(Kind::Shell { mirrored }, &|draw| draw.mirrored == mirrored);
             }
         }
     }
-}
-
-/// What is drawn by quads, in pieces of at most `quads_per_pass`; one piece where there is nothing.
-fn pieces(num_drawn: [u32; 2], quads_per_pass: u32) -> Vec<Vec<(Kind, Range<u32>)>> {
-    let mut pieces = vec![Vec::new()];
-    let mut room = quads_per_pass;
-    for (kind, count) in [Kind::Atom, Kind::Connector].into_iter().zip(num_drawn) {
-        let mut start = 0;
-        while start < count {
-            if room == 0 {
-                pieces.push(Vec::new());
-                room = quads_per_pass;
-            }
-            let end = start + room.min(count - start);
-            room -= end - start;
-            if let Some(piece) = pieces.last_mut() {
-                piece.push((kind, start..end));
-            }
-            start = end;
-        }
-    }
-    pieces
 }
 
 /// The WGSL of the triangles' visibility, or of the shell that is their outline. `numbered`: the device numbers the
@@ -472,21 +424,4 @@ pub fn visibility_module(atoms: bool, key: VisibilityKey) -> Module {
     module.add(if key.light { wgsl!("lib/seen_light.wgsl") } else { wgsl!("lib/seen_camera.wgsl") });
     module.add(if atoms { wgsl!("objects/atom.wgsl") } else { wgsl!("objects/connector.wgsl") });
     module
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pieces_hold_each_quad_once_in_order() {
-        let atom = |range| (Kind::Atom, range);
-        let connector = |range| (Kind::Connector, range);
-        assert_eq!(pieces([0, 0], 4), [vec![]]);
-        assert_eq!(pieces([4, 0], 4), [vec![atom(0..4)]]);
-        assert_eq!(pieces([3, 2], 4), [vec![atom(0..3), connector(0..1)], vec![connector(1..2)]]);
-        assert_eq!(pieces([9, 0], 4), [vec![atom(0..4)], vec![atom(4..8)], vec![atom(8..9)]]);
-        assert_eq!(pieces([u32::MAX, 7], u32::MAX).len(), 2);
-        assert_eq!(pieces([300_000, 300_000], u32::MAX), [vec![atom(0..300_000), connector(0..300_000)]]);
-    }
 }

@@ -14,8 +14,6 @@ pub struct PassTimer {
     resolved: wgpu::Buffer,
     readable: wgpu::Buffer,
     names: Vec<&'static str>,
-    /// Whether the pass that began last found no room.
-    is_full: bool,
     period_ns: f64,
 }
 
@@ -36,37 +34,21 @@ impl PassTimer {
             resolved: buffer("pass times", wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC),
             readable: buffer("pass times readable", wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST),
             names: Vec::new(),
-            is_full: false,
             period_ns: f64::from(gpu.queue.get_timestamp_period()),
         })
     }
 
     /// Where the next pass writes its times.
     pub fn pass(&mut self, name: &'static str) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
-        self.piece(name, true, true)
-    }
-
-    /// Where one piece of a pass writes its times: the first its beginning, the last its end.
-    pub fn piece(
-        &mut self,
-        name: &'static str,
-        is_first: bool,
-        is_last: bool,
-    ) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
-        if is_first {
-            self.is_full = self.names.len() as u32 >= MAX_PASSES;
-            if !self.is_full {
-                self.names.push(name);
-            }
-        }
-        if self.is_full || !(is_first || is_last) {
+        let index = self.names.len() as u32;
+        if index >= MAX_PASSES {
             return None;
         }
-        let index = self.names.len() as u32 - 1;
+        self.names.push(name);
         Some(wgpu::RenderPassTimestampWrites {
             query_set: &self.queries,
-            beginning_of_pass_write_index: is_first.then_some(2 * index),
-            end_of_pass_write_index: is_last.then_some(2 * index + 1),
+            beginning_of_pass_write_index: Some(2 * index),
+            end_of_pass_write_index: Some(2 * index + 1),
         })
     }
 
