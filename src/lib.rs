@@ -10,6 +10,7 @@ pub mod engine;
 pub mod frame;
 pub mod gpu;
 pub mod providers;
+pub mod reference;
 pub mod scene;
 pub mod shading;
 pub mod shipped;

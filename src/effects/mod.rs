@@ -5,6 +5,8 @@
 //! `tests/twins/NAME.rs`, and one line in [`EFFECTS`]. What the entries can read, the frame declares: `view`, `params`,
 //! `geometry`, `color`, `ids`, and each earlier pass by its name; the last returns `finished(color)`.
 
+pub mod focus;
+pub mod occlusion;
 pub mod outline;
 
 use crate::config::param::{Length, Param, Values};

@@ -1,6 +1,7 @@
 //! The engine: the three providers, the scene and the renderer. Window, headless command and tests all use it.
 
 mod build;
+pub mod exact;
 pub mod lint;
 mod live;
 mod palette;

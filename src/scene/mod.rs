@@ -43,7 +43,7 @@ pub use error::SceneError;
 pub use image::{Image, Pixels, RowsHeader, write_png_rows, write_whole};
 pub use import::{Format, LoadOptions, ModelChoice};
 pub use light::{Light, LightPlace, Lighting, Shadow};
-pub use mesh::{Assembly, MeshMaterial, Part, RawMesh, Shape, unpack_normal};
+pub use mesh::{Assembly, MeshMaterial, Part, RawMesh, Shape, unpack_hull, unpack_normal};
 pub use molecule::{Atom, Bond, Chain, Molecule, MoleculeCopy, Residue, ResidueKind, Sphere};
 pub use name::Name;
 pub use report::{Note, NoteKind, Report};

@@ -1,0 +1,252 @@
+//! A scene in a style, drawn by the reference renderer: without a device.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3, Vec3};
+
+use super::{Content, Request, Resolved, resolve};
+use crate::config::{Length, Style, Value, Values};
+use crate::effects::focus::FOCUS;
+use crate::frame::objects::DrawList;
+use crate::frame::{MAX_LIGHTS, Materials};
+use crate::reference::{
+    self, BrokenOff, Cylinder, HullLook, Lens, Look, Material, Meshes, Occlusion, Optics, Part, Picture, Settings, Shade, Sphere,
+    World,
+};
+use crate::scene::{Camera, Image, Pixels, Scene};
+use crate::shading::{SHADERS, basic::BasicMaterial, toon::ToonMaterial};
+
+/// Post effects that the reference draws, by their names in style files.
+pub const DRAWN_EFFECTS: &[&str] = &["ssaoPost", "dofPost"];
+
+/// Draws stills of one scene in one style, on all cores.
+pub struct Exact {
+    content: Content,
+    threads: usize,
+}
+
+/// Why a picture was not finished.
+#[derive(Debug)]
+pub enum ExactError {
+    /// Whoever follows the progress asked to stop.
+    BrokenOff,
+    /// Whoever takes the rows.
+    Sink(std::io::Error),
+}
+
+impl From<BrokenOff> for ExactError {
+    fn from(_: BrokenOff) -> ExactError {
+        ExactError::BrokenOff
+    }
+}
+
+impl Exact {
+    /// A renderer of this scene in this style. `threads`: as many as there are cores, unless it says.
+    pub fn new(scene: Scene, style: Style, threads: Option<usize>) -> Exact {
+        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+        Exact { content: Content::new(Arc::new(scene), Arc::new(style)), threads: threads.unwrap_or_else(cores) }
+    }
+
+    /// Whether every pixel of the picture covers what is behind it.
+    pub fn is_opaque(&self, request: &Request) -> bool {
+        !request.transparent && self.content.camera.background(false)[3] >= 1.0
+    }
+
+    /// Draws a picture and gives `sink` its rows from the top, some at a time: RGBA, 8 bits a channel, or 16 in native order.
+    /// `progress` hears of rows that are done, and may break off.
+    ///
+    /// # Errors
+    /// [`ExactError`] where `progress` breaks off or `sink` fails.
+    pub fn draw_rows(
+        &self,
+        request: &Request,
+        progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
+        sink: &mut dyn FnMut(&[u8]) -> std::io::Result<()>,
+    ) -> Result<(), ExactError> {
+        self.light_rows(request, progress, &mut |rows| sink(&encoded(rows, request.wide)).map_err(ExactError::Sink))
+    }
+
+    /// The same as premultiplied linear light.
+    ///
+    /// # Errors
+    /// As [`Exact::draw_rows`].
+    pub fn light_rows(
+        &self,
+        request: &Request,
+        progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
+        sink: &mut dyn FnMut(&[[f32; 4]]) -> Result<(), ExactError>,
+    ) -> Result<(), ExactError> {
+        let content = &self.content;
+        let Resolved { list, materials, drawn } = resolve(content, None, request.size[1]);
+        let camera = content.camera.turned(request.size, request.turn_deg.to_radians());
+        let mut lighting = drawn.lighting.lighting(&camera);
+        lighting.lights.truncate(MAX_LIGHTS);
+        let optics = Optics::new(&camera, request.size);
+        let materials = shades(&materials, &content.style, &drawn.used);
+        let world = world(list.unwrap_or_default(), &camera, content, &materials, &optics);
+        let effect = |name: &str| {
+            let mut listed = content.style.listed_effects.iter().map(|listed| &content.style.shaders[listed.index]);
+            listed.find(|used| used.shader == name).map(|used| &used.values)
+        };
+        let lengths = &drawn.lengths;
+        let occlusion = effect("ssaoPost")
+            .map(|values| Occlusion { radius: lengths.world(values.length("radius")), intensity: values.number("intensity") })
+            .filter(|occlusion| occlusion.radius > 0.0 && occlusion.intensity > 0.0);
+        let lens = effect("dofPost").and_then(|values| {
+            let px = |length| {
+                let (px, world) = lengths.screen(length, request.size[1]);
+                px + world / optics.pixel(middle_depth(&camera, content))
+            };
+            lens(values, &optics, &camera, content, &|length| lengths.world(length), &px)
+        });
+        let picture = Picture {
+            world: &world,
+            materials: &materials,
+            optics,
+            lighting: &lighting,
+            occlusion,
+            lens,
+            background: content.camera.background(request.transparent),
+        };
+        let settings = Settings { size: request.size, samples: request.samples, threads: self.threads };
+        reference::render(&picture, &settings, progress, sink)
+    }
+
+    /// Draws one still.
+    ///
+    /// # Errors
+    /// [`ExactError::BrokenOff`] where `progress` breaks off.
+    pub fn still(
+        &self,
+        request: &Request,
+        progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
+    ) -> Result<Image, ExactError> {
+        let mut bytes = Vec::new();
+        self.draw_rows(request, progress, &mut |rows| {
+            bytes.extend_from_slice(rows);
+            Ok(())
+        })?;
+        let pixels = if request.wide {
+            Pixels::U16(bytes.chunks_exact(2).map(bytemuck::pod_read_unaligned).collect())
+        } else {
+            Pixels::U8(bytes)
+        };
+        Ok(Image { size: request.size, pixels, opaque: self.is_opaque(request) })
+    }
+}
+
+/// Depth of the middle of the scene's sphere.
+fn middle_depth(camera: &Camera, content: &Content) -> f64 {
+    let center = content.scene.bounding_sphere().center;
+    f64::from(-camera.view_from_world.transform_point3(center).z).max(f64::from(camera.near))
+}
+
+/// The lens of `dofPost`: sharp at `focus`, and `blur` wide at the farther of the first and last of `layers`.
+fn lens(
+    values: &Values,
+    optics: &Optics,
+    camera: &Camera,
+    content: &Content,
+    world: &dyn Fn(Length) -> f64,
+    px: &dyn Fn(Length) -> f64,
+) -> Option<Lens> {
+    let (middle, radius) = (middle_depth(camera, content), f64::from(content.scene.bounding_sphere().radius));
+    let Some(Value::Numbers(layers)) = values.get("layers") else { return None };
+    let &[first, sharp_from, sharp_to, last] = &layers[..] else { return None };
+    let depth = |layer: f64| (middle + (2.0 * layer - 1.0) * radius).max(optics.near);
+    let focus = match values.get("focus") {
+        Some(Value::Length(length)) => world(*length).max(optics.near),
+        Some(Value::Choice(index)) if FOCUS[*index] == "center" => middle,
+        _ => 0.5 * (depth(sharp_from) + depth(sharp_to)),
+    };
+    let farther = [depth(first), depth(last)].into_iter().max_by(|a, b| (a - focus).abs().total_cmp(&(b - focus).abs()))?;
+    Lens::new(optics, focus, farther, px(values.length("blur")))
+}
+
+/// Materials as the reference shades them.
+fn shades(materials: &Materials, style: &Style, used: &[super::build::MaterialUse]) -> Vec<Material> {
+    let params = |shader: usize, index: u32, size: usize| {
+        materials.params.get(&shader).and_then(|bytes| bytes.get(index as usize * size..(index as usize + 1) * size))
+    };
+    let of = |(material, used): (&crate::frame::objects::Material, &super::build::MaterialUse)| {
+        let shader = material.shader as usize;
+        let values = &style.shaders[used.shader].values;
+        let shade = match SHADERS[shader].name() {
+            "basic" => params(shader, material.index, size_of::<BasicMaterial>())
+                .map(|bytes| Shade::basic(&bytemuck::pod_read_unaligned(bytes))),
+            "toon" => params(shader, material.index, size_of::<ToonMaterial>())
+                .map(|bytes| Shade::Toon(bytemuck::pod_read_unaligned(bytes))),
+            _ => None,
+        };
+        let [r, g, b, covers] = material.base_color;
+        let width = (f64::from(material.hull_px), f64::from(material.hull_world));
+        let [hull_r, hull_g, hull_b, _] = material.hull_color;
+        Material {
+            base_color: (covers > 0.5).then(|| Vec3::new(r, g, b).as_dvec3()),
+            hull: (width.0 + width.1 > 0.0).then(|| HullLook { color: Vec3::new(hull_r, hull_g, hull_b).as_dvec3(), width }),
+            opacity: values.number("opacity"),
+            shade: shade.unwrap_or(Shade::Unlit),
+        }
+    };
+    materials.common.iter().zip(used).map(of).collect()
+}
+
+/// Everything that is drawn, in view space.
+fn world(list: DrawList, camera: &Camera, content: &Content, materials: &[Material], optics: &Optics) -> World {
+    let view_from_world = DAffine3::from_mat4(camera.view_from_world.as_dmat4());
+    let place = |at: [f32; 3]| view_from_world.transform_point3(Vec3::from(at).as_dvec3());
+    let spheres = list.atoms.iter().map(|atom| Sphere {
+        center: place(atom.position_world),
+        radius: f64::from(atom.radius),
+        look: Look { color: unpacked(atom.color), material: atom.material, group: atom.group },
+    });
+    let cylinders = list.connectors.iter().map(|connector| {
+        let look = |color: [u32; 2]| Look { color: unpacked(color), material: connector.material, group: color[1] >> 16 };
+        Cylinder {
+            ends: [place(connector.a_world), place(connector.b_world)],
+            radius: f64::from(connector.radius),
+            looks: [look(connector.color_a), look(connector.color_b)],
+        }
+    });
+    let meshes = list.meshes.as_ref().map(|scene| {
+        let parts = (0..).zip(&list.parts).filter_map(|(index, part)| {
+            let part = part.as_ref()?;
+            let look = Look { color: unpacked(part.color), material: part.material, group: 0 };
+            Some(Part { part: index, look, has_vertex_colors: part.color[1] >> 16 != 0 })
+        });
+        Meshes { scene: Arc::clone(scene), parts: parts.collect() }
+    });
+    let center = view_from_world.transform_point3(content.scene.bounding_sphere().center.as_dvec3());
+    World::new(center, view_from_world, spheres.collect(), cylinders.collect(), meshes, |world| {
+        reference::outlines(world, materials, optics)
+    })
+}
+
+/// Linear RGB of two words of half floats.
+fn unpacked([rg, b]: [u32; 2]) -> DVec3 {
+    let value = |bits: u32| half::f16::from_bits(bits as u16).to_f64();
+    DVec3::new(value(rg & 0xffff), value(rg >> 16), value(b & 0xffff))
+}
+
+/// Straight-alpha sRGB of premultiplied linear light.
+fn encoded(rows: &[[f32; 4]], wide: bool) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(rows.len() * if wide { 8 } else { 4 });
+    for [r, g, b, alpha] in rows.iter().map(|pixel| pixel.map(f64::from)) {
+        let channels = [r, g, b].map(|light| srgb_from_linear(light / alpha.max(1e-6)));
+        for value in channels.into_iter().chain([alpha.clamp(0.0, 1.0)]) {
+            if wide {
+                bytes.extend(((value * 65535.0).round() as u16).to_ne_bytes());
+            } else {
+                bytes.push((value * 255.0).round() as u8);
+            }
+        }
+    }
+    bytes
+}
+
+/// The sRGB transfer curve [IEC61966, part 2-1].
+fn srgb_from_linear(light: f64) -> f64 {
+    let c = light.clamp(0.0, 1.0);
+    if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
+}

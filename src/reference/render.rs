@@ -1,0 +1,236 @@
+//! The picture: every pixel by many lines of sight, tile by tile on all cores.
+
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+
+use glam::{DVec2, DVec3};
+
+use super::light::{Arriving, arriving};
+use super::occlusion::occluded;
+use super::sampling::{seed, spread, square_point};
+use super::world::{Hit, Surface, World};
+use super::{Lens, Material, Occlusion, Optics, Shade, toon};
+use crate::scene::Lighting;
+use crate::shading::environment::Studio;
+
+/// Side of a tile in pixels.
+const TILE_PX: u32 = 32;
+/// What is seen through less than this share of light does not change a picture of 16 bits.
+const LEAST_LIGHT: f64 = 1.0 / 131_072.0;
+/// Rays that a pixel's light, occlusion and environment take in all, at the least.
+const SHADOW_RAYS: u32 = 256;
+const OCCLUSION_RAYS: u32 = 512;
+const ENVIRONMENT_DIRECTIONS: u32 = 1024;
+
+/// What `sampling::seed` is asked for.
+const FOR_PLACE: u32 = 0;
+const FOR_LENS: u32 = 1;
+const FOR_OCCLUSION: u32 = 2;
+const FOR_ENVIRONMENT: u32 = 3;
+const FOR_LIGHTS: u32 = 8;
+
+/// What a picture shows, and how.
+pub struct Picture<'a> {
+    /// What there is.
+    pub world: &'a World,
+    /// Its materials.
+    pub materials: &'a [Material],
+    /// Who looks.
+    pub optics: Optics,
+    /// What shines, in view space.
+    pub lighting: &'a Lighting,
+    /// Darkening where things are near.
+    pub occlusion: Option<Occlusion>,
+    /// What is out of focus.
+    pub lens: Option<Lens>,
+    /// Premultiplied linear background.
+    pub background: [f32; 4],
+}
+
+/// How finely, and by how many.
+#[derive(Debug, Clone, Copy)]
+pub struct Settings {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Samples a pixel; a square number is used, the next one up.
+    pub samples: u32,
+    /// Threads; the picture does not depend on them.
+    pub threads: usize,
+}
+
+/// Whoever follows the progress asked to stop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BrokenOff;
+
+/// Draws a picture and gives `sink` its rows from the top, some at a time: premultiplied linear light. `progress` hears the
+/// rows that are done.
+///
+/// # Errors
+/// [`BrokenOff`] where `progress` breaks off; `sink`'s own errors are its affair.
+pub fn render<E: From<BrokenOff>>(
+    picture: &Picture<'_>,
+    settings: &Settings,
+    progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
+    sink: &mut dyn FnMut(&[[f32; 4]]) -> Result<(), E>,
+) -> Result<(), E> {
+    let [width, height] = settings.size;
+    let studio = Studio::neutral();
+    let side = (settings.samples.max(1) as f64).sqrt().ceil() as u32;
+    let columns = width.div_ceil(TILE_PX);
+    for top in (0..height).step_by(TILE_PX as usize) {
+        let rows = TILE_PX.min(height - top);
+        let band = Mutex::new(vec![[0.0f32; 4]; width as usize * rows as usize]);
+        let (next, stopped) = (AtomicU32::new(0), AtomicBool::new(false));
+        let work = || {
+            loop {
+                let column = next.fetch_add(1, Ordering::Relaxed);
+                if column >= columns || stopped.load(Ordering::Relaxed) {
+                    break;
+                }
+                let left = column * TILE_PX;
+                let tile_width = TILE_PX.min(width - left);
+                let pixel = |index: u32| picture.pixel([left + index % tile_width, top + index / tile_width], side, &studio);
+                let tile: Vec<[f32; 4]> = (0..tile_width * rows).map(pixel).collect();
+                let Ok(mut band) = band.lock() else { break };
+                for (row, values) in tile.chunks_exact(tile_width as usize).enumerate() {
+                    let start = row * width as usize + left as usize;
+                    band[start..start + values.len()].copy_from_slice(values);
+                }
+            }
+        };
+        std::thread::scope(|scope| {
+            for _ in 1..settings.threads.max(1) {
+                scope.spawn(work);
+            }
+            work();
+        });
+        if progress(top + rows).is_break() {
+            stopped.store(true, Ordering::Relaxed);
+            return Err(BrokenOff.into());
+        }
+        sink(&band.into_inner().unwrap_or_default())?;
+    }
+    Ok(())
+}
+
+impl Picture<'_> {
+    /// The mean of a pixel's samples over the background: premultiplied linear light.
+    fn pixel(&self, pixel: [u32; 2], side: u32, studio: &Studio) -> [f32; 4] {
+        let count = side * side;
+        let (mut light, mut alpha) = (DVec3::ZERO, 0.0);
+        for index in 0..count {
+            // Once in each cell of a grid.
+            let within = if count == 1 { DVec2::splat(0.5) } else { square_point(seed(pixel, index, FOR_PLACE)) };
+            let cell = DVec2::new(f64::from(index % side), f64::from(index / side));
+            let corner = DVec2::new(f64::from(pixel[0]), f64::from(pixel[1]));
+            let place = corner + (cell + within) / f64::from(side);
+            let (color, covered) = self.sample(pixel, index, count, place, studio);
+            light += color;
+            alpha += covered;
+        }
+        let [r, g, b, a] = self.background.map(f64::from);
+        let share = 1.0 / f64::from(count);
+        let (light, alpha) = (light * share, alpha * share);
+        let open = 1.0 - alpha;
+        let over = light + open * DVec3::new(r, g, b);
+        [over.x as f32, over.y as f32, over.z as f32, (alpha + open * a) as f32]
+    }
+
+    /// Light along one line of sight, and the share of what is behind it that it covers.
+    fn sample(&self, pixel: [u32; 2], index: u32, count: u32, place: DVec2, studio: &Studio) -> (DVec3, f64) {
+        let ray = match &self.lens {
+            Some(lens) => {
+                // Spread over the pixel's samples, whichever cell each has.
+                let point = spread(index, seed(pixel, 0, FOR_LENS));
+                lens.ray(&self.optics, place, point)
+            }
+            None => self.optics.ray(place),
+        };
+        let near = self.optics.near;
+        let (mut light, mut open) = (DVec3::ZERO, 1.0);
+        let mut last: Option<Hit> = None;
+        let mut outlines_after = near;
+        let mut crossed: Vec<u64> = Vec::new();
+        while open > LEAST_LIGHT {
+            let hit = self.world.next(ray, near, last);
+            let end = hit.map_or(f64::INFINITY, |hit| hit.t);
+            if let Some(outline) = self.world.first_outline(ray, near, outlines_after, end, &crossed) {
+                let material = &self.materials[outline.material as usize];
+                if let Some(hull) = material.hull {
+                    light += open * material.opacity * hull.color;
+                    open *= 1.0 - material.opacity;
+                }
+                outlines_after = outline.depth;
+                crossed.push(outline.owner);
+                continue;
+            }
+            let Some(hit) = hit else { break };
+            let surface = self.world.surface(ray, hit);
+            let opacity = self.materials[surface.material as usize].opacity;
+            if opacity > 0.0 {
+                let seen = Seen { pixel, index, count, surface: &surface, hit };
+                let color = self.shaded(&seen, -ray.direction.normalize(), studio);
+                light += open * opacity * color;
+                open *= 1.0 - opacity;
+            }
+            crossed.push(surface.id);
+            last = Some(hit);
+        }
+        (light, 1.0 - open)
+    }
+
+    fn shaded(&self, seen: &Seen<'_>, to_viewer: DVec3, studio: &Studio) -> DVec3 {
+        let surface = seen.surface;
+        let material = &self.materials[surface.material as usize];
+        let base_color = material.base_color.unwrap_or(surface.color);
+        let lights = || -> Vec<Arriving> {
+            let num_rays = SHADOW_RAYS.div_ceil(seen.count);
+            let lights = (0..).zip(&self.lighting.lights);
+            lights
+                .map(|(number, light)| {
+                    let seed = seed(seen.pixel, seen.index, FOR_LIGHTS + number);
+                    arriving(self.world, light, surface, seen.hit.object, num_rays, seed)
+                })
+                .collect()
+        };
+        let color = match &material.shade {
+            Shade::Unlit => base_color,
+            Shade::Toon(toon) => toon::shade(toon, base_color, surface.normal, to_viewer, &lights()),
+            Shade::Basic(basic) => {
+                let num_directions = ENVIRONMENT_DIRECTIONS.div_ceil(seen.count);
+                let seed = seed(seen.pixel, seen.index, FOR_ENVIRONMENT);
+                let ambient = self.lighting.ambient.as_dvec3();
+                let radiance = basic.0.radiance(
+                    base_color,
+                    surface.normal,
+                    to_viewer,
+                    &lights(),
+                    studio,
+                    ambient,
+                    num_directions,
+                    seed,
+                );
+                basic.0.tone_mapped(radiance)
+            }
+        };
+        match &self.occlusion {
+            Some(occlusion) => {
+                let num_rays = OCCLUSION_RAYS.div_ceil(seen.count);
+                let seed = seed(seen.pixel, seen.index, FOR_OCCLUSION);
+                let occluded = occluded(self.world, surface, seen.hit.object, occlusion.radius, num_rays, seed);
+                color * (1.0 - occlusion.intensity * occluded).max(0.0)
+            }
+            None => color,
+        }
+    }
+}
+
+/// A surface as one sample sees it.
+struct Seen<'a> {
+    pixel: [u32; 2],
+    index: u32,
+    count: u32,
+    surface: &'a Surface,
+    hit: Hit,
+}
