@@ -18,7 +18,8 @@ Figures:
   max          largest error of display values, 0 to 1: one wrong pixel shows here
   rmse_linear, max_linear
                the same in linear light
-  psnr         peak signal-to-noise ratio of display values in dB; inf if nothing differs
+  psnr         peak signal-to-noise ratio of display values in dB; inf if nothing differs (in JSON the
+               string inf)
   ssim         structural similarity of luma, windows of 11x11 pixels; 1 if nothing differs
   flip         FLIP, how plainly the difference is seen when the pictures alternate, 0 to 1; for a screen of 3840
                pixels and 0.7 m, seen from 0.7 m

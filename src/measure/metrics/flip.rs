@@ -30,8 +30,8 @@ const CX_SCALE: f32 = 0.0053;
 const CZ_GAUSSIANS: [[f32; 2]; 2] = [[34.1, 0.04], [13.5, 0.025]];
 
 /// White of D65, X and Z for Y = 1, and what divides by it [FlipCode, src/cpp/FLIP.h].
-const WHITE_XZ: [f32; 2] = [0.950_428_55, 1.088_900_4];
-const INVERSE_WHITE_XZ: [f32; 2] = [1.052_156_9, 0.918_357_67];
+const WHITE_XZ: [f32; 2] = [0.950_428_55, 1.088_900_3];
+const INVERSE_WHITE_XZ: [f32; 2] = [1.052_156_9, 0.918_357_7];
 
 /// Error of each pixel, 0 (no difference is seen) to 1. Pictures of one size.
 pub(super) fn map(reference: &Picture, test: &Picture) -> Vec<f32> {
@@ -264,7 +264,7 @@ fn linear_from_opponent([y, cx, cz]: [f32; 3]) -> [f32; 3] {
     let y = (y + 16.0) / 116.0;
     let (x, z) = ((y + cx / 500.0) * WHITE_XZ[0], (y - cz / 200.0) * WHITE_XZ[1]);
     [
-        3.241_003_3 * x + -1.537_399 * y + -0.498_615_86 * z,
+        3.241_003_3 * x + -1.537_398_9 * y + -0.498_615_86 * z,
         -0.969_224_33 * x + 1.875_930_1 * y + 0.041_554_224 * z,
         0.055_639_423 * x + -0.204_011_2 * y + 1.057_148_9 * z,
     ]
@@ -311,7 +311,52 @@ fn remapped(difference: f32, largest: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::metrics::testing::{noise, picture};
+    use crate::measure::metrics::testing::{noise, picture, scattered};
+
+    /// What two correct implementations may differ by: rounding near zero, seen through a square root.
+    const TOLERANCE: f32 = 1e-4;
+    /// Width and height of the pairs whose errors the authors' program gave.
+    const SIZE: [u32; 2] = [96, 80];
+
+    /// A shaded disc on a light ground.
+    fn disc(x: usize, y: usize) -> [u8; 3] {
+        let (dx, dy) = (x as i64 - 48, y as i64 - 40);
+        if dx * dx + dy * dy < 900 { [200, (100 + dx) as u8, (90 - dy) as u8] } else { [240, 240, 235] }
+    }
+
+    /// Holds a pair against what the authors' program gives: the mean, and four places.
+    #[track_caller]
+    fn holds(
+        reference: impl Fn(usize, usize) -> [u8; 3],
+        test: impl Fn(usize, usize) -> [u8; 3],
+        mean: f32,
+        at: [f32; 4],
+    ) {
+        let value = |byte: u8| f32::from(byte) / 255.0;
+        let reference = picture(SIZE, |x, y| reference(x, y).map(value));
+        let map = map(&reference, &picture(SIZE, |x, y| test(x, y).map(value)));
+        let found = [[0, 0], [48, 40], [49, 63], [77, 41]].map(|[x, y]: [usize; 2]| map[y * SIZE[0] as usize + x]);
+        assert!(found.iter().zip(at).all(|(found, due)| (found - due).abs() < TOLERANCE), "{found:?}, not {at:?}");
+        let found = map.iter().sum::<f32>() / map.len() as f32;
+        assert!((found - mean).abs() < 1e-5, "mean {found}, not {mean}");
+    }
+
+    #[test]
+    fn errors_are_those_of_the_authors_program() {
+        let noise = |x, y, seed| [0, 1, 2].map(|c| scattered(x as u32, y as u32, c + seed));
+        let at = [0.962_785, 0.510_422, 0.387_944, 0.333_831];
+        holds(|x, y| noise(x, y, 0), |x, y| noise(x, y, 3), 0.444_670, at);
+        holds(disc, |x, y| disc(x + 1, y), 0.056_903, [0.0, 0.035_812, 0.037_903, 0.483_473]);
+        let brighter = |x, y| disc(x, y).map(|value| value + 1);
+        holds(disc, brighter, 0.032_413, [0.027_933, 0.036_239, 0.037_772, 0.037_556]);
+        let gradient = |x, y| [(x * 2) as u8, (y * 3) as u8, 128];
+        let at = [0.921_975, 0.033_812, 0.068_842, 0.580_469];
+        holds(gradient, |x, y| gradient(95 - x, y), 0.489_842, at);
+        let edge = |end| move |x, _| [if x < end { 40 } else { 200 }; 3];
+        holds(edge(48), edge(50), 0.040_942, [0.0, 0.839_398, 0.691_997, 0.0]);
+        holds(|_, _| [0, 255, 0], |_, _| [0, 0, 255], 1.0, [1.0; 4]);
+        holds(|_, _| [0; 3], |_, _| [255; 3], 0.967_388, [0.967_388; 4]);
+    }
 
     #[test]
     fn identical_pictures_have_no_error() {
