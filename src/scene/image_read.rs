@@ -151,6 +151,8 @@ impl Image {
                 append(&mut rgba, &row, color).map_err(|_| no_memory())?;
             }
         }
+        // What follows the pixels holds their checksums.
+        reader.finish().map_err(|error| of_png(error, size))?;
         let opaque = match &rgba {
             Pixels::U8(values) => values.iter().skip(3).step_by(4).all(|alpha| *alpha == u8::MAX),
             Pixels::U16(values) => values.iter().skip(3).step_by(4).all(|alpha| *alpha == u16::MAX),
@@ -347,7 +349,7 @@ mod tests {
         says("empty", b"", "is empty");
         says("text", b"P3 1 1 255", "is another kind of file, not a PNG picture; export it as PNG");
         says("jpeg", &[0xff, 0xd8, 0xff, 0xe0], "is a JPEG, not a PNG picture");
-        for length in [4, 8, 20, 30, whole.len() - 20] {
+        for length in [4, 8, 20, 30, whole.len() - 20, whole.len() - 5] {
             says("cut", &whole[..length], "ends before the picture does; copy or save it again");
         }
         let mut damaged = whole.clone();
