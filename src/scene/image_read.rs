@@ -106,7 +106,7 @@ impl Image {
         let of_png = |error: png::DecodingError, size: [u32; 2]| match error {
             png::DecodingError::IoError(error) => of_io(error),
             png::DecodingError::LimitsExceeded => ImageError::NoMemory { file: file(), size },
-            other => ImageError::Damaged { file: file(), what: other.to_string() },
+            other => ImageError::Damaged { file: file(), what: other.to_string().trim_end_matches('.').to_owned() },
         };
 
         let mut reader = File::open(path).map_err(of_io)?;
@@ -133,10 +133,10 @@ impl Image {
         let no_memory = || ImageError::NoMemory { file: file(), size };
         let row_bytes = reader.output_line_size(size[0]).ok_or_else(no_memory)?;
         if reader.info().interlaced {
-            let mut bytes = Vec::new();
             let num_bytes = reader.output_buffer_size().ok_or_else(no_memory)?;
-            bytes.try_reserve_exact(num_bytes).map_err(|_| no_memory())?;
-            bytes.resize(num_bytes, 0);
+            Vec::<u8>::new().try_reserve_exact(num_bytes).map_err(|_| no_memory())?;
+            // Zeros that nothing was decoded to are no memory yet.
+            let mut bytes = vec![0; num_bytes];
             reader.next_frame(&mut bytes).map_err(|error| of_png(error, size))?;
             for row in bytes.chunks_exact(row_bytes.max(1)) {
                 append(&mut rgba, row, color).map_err(|_| no_memory())?;

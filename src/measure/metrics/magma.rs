@@ -2,7 +2,7 @@
 
 use crate::scene::{Image, Pixels};
 
-/// 33 of the 256 colours of the map, evenly spaced, sRGB [Smith2015]. Between them values are straight: no channel is off
+/// 33 of the 256 colours of the map, evenly spaced, sRGB [Smith2015, magma]. Between them values are straight: no channel is off
 /// by more than 1.3 of 255.
 const COLORS: [u32; 33] = [
     0x000004, 0x030311, 0x0a0822, 0x130d33, 0x1d1146, 0x28115a, 0x36106a, 0x430f76, 0x50127c, 0x5d177f, 0x691c81,

@@ -2,7 +2,7 @@
 
 use crate::scene::{Image, Pixels};
 
-/// Black and white, sRGB display values.
+/// Black, sRGB display values.
 pub const BLACK: [f32; 3] = [0.0; 3];
 /// White, sRGB display values.
 pub const WHITE: [f32; 3] = [1.0; 3];

@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn inverted_structure_is_negative() {
-        let stripes = |x: usize, _| [if x % 2 == 0 { 0.25 } else { 0.75 }; 3];
+        let stripes = |x: usize, _| [if x.is_multiple_of(2) { 0.25 } else { 0.75 }; 3];
         let (a, b) = (picture([64, 64], stripes), picture([64, 64], |x, y| stripes(x + 1, y)));
         // Mean 1/2 for both; the variance of each is 1/16, the covariance -1/16.
         let expected = (-2.0 / 16.0 + C2) / (2.0 / 16.0 + C2);
