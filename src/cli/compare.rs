@@ -34,8 +34,8 @@ known, as with two transparent pictures, it is laid over black and over white, a
 DIFF.png shows FLIP for each pixel: black where no difference is seen, then purple and orange, to pale yellow for the
 plainest.
 
-With --json, one object: a, b, each figure by its name, rmse_rgb and the like by channel, pixels (that count), all_pixels,
-and limits_passed, a list of messages.
+With --json, one object: a, b, each figure by its name, rmse_rgb and the like by channel, pixels (that count),
+all_pixels, and limits_passed, a list of messages.
 
 The exit code is 4 if a --limit is passed: below it for psnr and ssim, above it for all others.";
 

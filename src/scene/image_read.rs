@@ -92,8 +92,8 @@ impl Image {
     /// sRGB, whatever profile or gamma the file names; of an animation the still picture is read.
     ///
     /// # Errors
-    /// The file cannot be read, is no whole PNG, or has more than [`MAX_SIDE_PX`] pixels to a side, which is told before
-    /// memory for them is taken.
+    /// The file cannot be read, is no whole PNG, or has more than [`MAX_SIDE_PX`] pixels to a side, which is told
+    /// before memory for them is taken.
     pub fn read_png(path: &Path) -> Result<Image, ImageError> {
         let file = || path.display().to_string();
         let of_io = |source: io::Error| match source.kind() {

@@ -1,4 +1,5 @@
-//! Maps of pictures, made by all cores: bands of rows, each by itself, so that the result does not depend on their order.
+//! Maps of pictures, made by all cores: bands of rows, each by itself, so that the result does not depend on their
+//! order.
 
 use std::ops::Range;
 use std::sync::Mutex;

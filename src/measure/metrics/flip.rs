@@ -1,11 +1,11 @@
 //! FLIP: how plainly a person sees the difference when two pictures alternate at one place.
 //!
-//! Method: [Andersson2020 §4], as its authors compute it [FlipCode, src/cpp/FLIP.h], for pictures of 0..1 (LDR-FLIP). Both
-//! pictures are blurred as the eye blurs them at the distance that is assumed, their colours compared, and differences
-//! made larger where edges or points are in the one and not in the other.
+//! Method: [Andersson2020 §4], as its authors compute it [FlipCode, src/cpp/FLIP.h], for pictures of 0..1 (LDR-FLIP).
+//! Both pictures are blurred as the eye blurs them at the distance that is assumed, their colours compared, and
+//! differences made larger where edges or points are in the one and not in the other.
 //! Checked: `benches/flip` holds every pixel against the authors' program; the tests below hold some of its numbers.
-//! All of it is single precision and in the authors' order: a square root near zero shows every other rounding (one last
-//! digit of one constant moved a pixel by 1.7e-4).
+//! All of it is single precision and in the authors' order: a square root near zero shows every other rounding (one
+//! last digit of one constant moved a pixel by 1.7e-4).
 
 use std::f32::consts::PI;
 use std::ops::Range;

@@ -2,8 +2,8 @@
 
 use crate::scene::{Image, Pixels};
 
-/// 33 of the 256 colours of the map, evenly spaced, sRGB [Smith2015, magma]. Between them values are straight: no channel is off
-/// by more than 1.3 of 255.
+/// 33 of the 256 colours of the map, evenly spaced, sRGB [Smith2015, magma]. Between them values are straight: no
+/// channel is off by more than 1.3 of 255.
 const COLORS: [u32; 33] = [
     0x000004, 0x030311, 0x0a0822, 0x130d33, 0x1d1146, 0x28115a, 0x36106a, 0x430f76, 0x50127c, 0x5d177f, 0x691c81,
     0x762181, 0x822681, 0x8f2a81, 0x9c2e7f, 0xa9327d, 0xb63779, 0xc33b75, 0xcf4170, 0xdb486a, 0xe65163, 0xee5c5e,

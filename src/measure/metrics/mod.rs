@@ -29,8 +29,8 @@ use crate::scene::Image;
 /// What is compared, and over what.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Options {
-    /// The background (sRGB display values): transparent images are laid over it, and opaque ones cover what differs from
-    /// it. By default the colour that the corners of all opaque images share. Where they share none, opaque images
+    /// The background (sRGB display values): transparent images are laid over it, and opaque ones cover what differs
+    /// from it. By default the colour that the corners of all opaque images share. Where they share none, opaque images
     /// cover all, and transparent ones are laid over black and over white, of which the larger error counts.
     pub background: Option<[f32; 3]>,
     /// Every pixel counts, not only those that either image covers.

@@ -10,11 +10,11 @@ use crate::scene::Image;
 /// How steady a sequence is, beside its truth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stability {
-    /// Mean over steps, pixels and channels of `||I_t - I_(t-1)| - |R_t - R_(t-1)||`, I the sequence and R the truth, display
-    /// values: change that the truth does not have, or lacks. 0 is as steady as the truth.
+    /// Mean over steps, pixels and channels of `||I_t - I_(t-1)| - |R_t - R_(t-1)||`, I the sequence and R the truth,
+    /// display values: change that the truth does not have, or lacks. 0 is as steady as the truth.
     pub flicker: f64,
-    /// Largest `FLIP(I_t, I_(t-1)) - FLIP(R_t, R_(t-1))`, each the mean over the pixels that count: the plainest jump that
-    /// the truth does not have. Below 0 where the sequence moves less than the truth in every step.
+    /// Largest `FLIP(I_t, I_(t-1)) - FLIP(R_t, R_(t-1))`, each the mean over the pixels that count: the plainest jump
+    /// that the truth does not have. Below 0 where the sequence moves less than the truth in every step.
     pub pop: f64,
     /// The picture that the plainest jump leads to, counted from 0.
     pub pop_frame: usize,

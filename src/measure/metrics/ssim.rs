@@ -1,7 +1,7 @@
 //! Structural similarity, in its published form.
 //!
-//! Method: [Wang2004 §III.B, eq. 13], with the window and constants of [Wang2004 §III.C]. On luma: display values weighted by
-//! the luminances of sRGB's primaries [IEC61966, part 2-1]; the paper has grey pictures only.
+//! Method: [Wang2004 §III.B, eq. 13], with the window and constants of [Wang2004 §III.C]. On luma: display values
+//! weighted by the luminances of sRGB's primaries [IEC61966, part 2-1]; the paper has grey pictures only.
 //! Where we differ: the authors' code leaves out the 5 pixels along each border; here the window is cut there and its
 //! weights sum to 1 again, so that each pixel has a value.
 
