@@ -9,6 +9,7 @@ pub mod effects;
 pub mod engine;
 pub mod frame;
 pub mod gpu;
+pub mod measure;
 pub mod providers;
 pub mod reference;
 pub mod scene;

@@ -1,6 +1,7 @@
 //! The command line: one file per subcommand; errors are printed once, here, and choose the exit code.
 
 mod check;
+mod compare;
 mod copy;
 mod gallery;
 mod info;
@@ -39,6 +40,8 @@ enum Command {
     Check(check::Args),
     /// Say what scenes hold: atoms, residues, parts, materials, bounds, and selectors for them
     Info(info::Args),
+    /// Say how far two pictures are from each other, and where
+    Compare(compare::Args),
     /// Copy a shipped look to a file, to start from
     Copy(copy::Args),
     /// Print the JSON Schema of style files, for editors
@@ -62,6 +65,11 @@ impl Failure {
     /// The command line is wrong: exit code 2.
     pub(crate) fn usage(message: impl Display) -> Failure {
         Failure { code: 2, message: clean(message) }
+    }
+
+    /// A comparison is above its limit: exit code 4.
+    pub(crate) fn above_limit(message: impl Display) -> Failure {
+        Failure { code: 4, message: clean(message) }
     }
 
     /// The input is wrong, and each mistake was told.
@@ -100,6 +108,7 @@ pub fn run() -> ExitCode {
         Command::Gallery(args) => gallery::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Info(args) => info::run(&args),
+        Command::Compare(args) => compare::run(&args),
         Command::Copy(args) => copy::run(&args),
         Command::Schema(args) => schema::run(&args),
     };

@@ -366,7 +366,7 @@ const OTHER_FORMATS: &[&str] = &[
 ];
 
 /// Refuses a name that promises another format than what is written.
-fn check_format(path: &Path, written: &str) -> Result<(), Failure> {
+pub(super) fn check_format(path: &Path, written: &str) -> Result<(), Failure> {
     let Some(extension) = path.extension().and_then(|extension| extension.to_str()) else { return Ok(()) };
     let extension = extension.to_ascii_lowercase();
     if extension == written || !OTHER_FORMATS.contains(&extension.as_str()) {
@@ -379,7 +379,7 @@ fn check_format(path: &Path, written: &str) -> Result<(), Failure> {
 }
 
 /// Refuses what cannot be written before any work is done.
-fn check_writable(path: &Path) -> Result<(), Failure> {
+pub(super) fn check_writable(path: &Path) -> Result<(), Failure> {
     let shown = path.display();
     if path.is_dir() || path.as_os_str().as_encoded_bytes().ends_with(b"/") {
         return Err(Failure::input(format!("{shown}: is a folder; name a file in it")));

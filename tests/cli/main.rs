@@ -7,6 +7,7 @@ mod bad_outputs;
 mod bad_scenes;
 mod bad_styles;
 mod check;
+mod compare;
 mod extremes;
 mod info;
 mod pictures;

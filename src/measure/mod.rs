@@ -1,0 +1,3 @@
+//! Measurements: how far pictures are from each other.
+
+pub mod metrics;
