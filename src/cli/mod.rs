@@ -3,6 +3,7 @@
 mod check;
 mod compare;
 mod copy;
+mod exact;
 mod gallery;
 mod info;
 mod inputs;
@@ -70,6 +71,11 @@ impl Failure {
     /// A comparison is above its limit: exit code 4.
     pub(crate) fn above_limit(message: impl Display) -> Failure {
         Failure { code: 4, message: clean(message) }
+    }
+
+    /// The user broke it off: exit code 130, as of a program that an interrupt ends.
+    pub(crate) fn interrupted() -> Failure {
+        Failure { code: 130, message: "interrupted: no picture was written".to_owned() }
     }
 
     /// The input is wrong, and each mistake was told.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::inputs::{self, Size};
-use super::{Failure, answer, inputs::Loaded, tell};
+use super::{Failure, answer, exact, inputs::Loaded, tell};
 use crate::config::Style;
 use crate::engine::{Engine, Gpu, GpuError, MAX_SAMPLES, Request, TileError};
 use crate::scene::{AovName, LoadOptions, ModelChoice, RowsHeader, Scene, write_png_rows};
@@ -26,9 +26,12 @@ pub(super) struct Args {
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1000x1000")]
     size: Size,
-    /// Samples a pixel
-    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
-    samples: u32,
+    /// Samples a pixel: 16 by default, 64 by the reference renderer
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
+    samples: Option<u32>,
+    /// What draws: the adapter, or exact ray casts on all cores; auto takes the adapter where there is one
+    #[arg(long, value_enum, default_value_t = Renderer::Auto)]
+    renderer: Renderer,
     /// Leave the background transparent (straight alpha)
     #[arg(long)]
     transparent: bool,
@@ -59,10 +62,44 @@ pub(super) struct Args {
     turntable: Option<u32>,
 }
 
+/// What draws a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Renderer {
+    /// The adapter, or the reference renderer where there is none
+    Auto,
+    /// The adapter
+    Gpu,
+    /// The reference renderer
+    Reference,
+}
+
+/// Samples of a still on an adapter.
+const GPU_SAMPLES: u32 = 16;
+
 impl Args {
     /// The files or names of the scenes.
     pub(super) fn scenes(&self) -> &[String] {
         &self.scenes
+    }
+
+    /// Samples a pixel, `default` where the command line says nothing.
+    pub(super) fn samples(&self, default: u32) -> u32 {
+        self.samples.unwrap_or(default)
+    }
+
+    /// How many pictures of a turn.
+    pub(super) fn turntable(&self) -> Option<u32> {
+        self.turntable
+    }
+
+    /// Whether it goes on after each save.
+    pub(super) fn is_watched(&self) -> bool {
+        self.watch
+    }
+
+    /// Whether AOVs are asked for.
+    pub(super) fn has_aovs(&self) -> bool {
+        !self.aov.is_empty()
     }
 
     /// Width and height of the picture.
@@ -94,9 +131,14 @@ impl Args {
         pictures.chain(self.aov.iter().map(|(_, file)| file.clone()))
     }
 
-    fn request(&self) -> Request {
+    /// What to draw.
+    pub(super) fn request(&self) -> Request {
         let wide = self.bits == "16";
-        Request { transparent: self.transparent, wide, ..Request::new(self.size.0, self.samples) }
+        Request {
+            transparent: self.transparent,
+            wide,
+            ..Request::new(self.size.0, self.samples.unwrap_or(GPU_SAMPLES))
+        }
     }
 }
 
@@ -138,6 +180,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         return super::watch::run(args);
     }
     let options = args.load_options();
+    if args.renderer == Renderer::Reference {
+        return exact::run(args, &options);
+    }
 
     // The device opens while the files are read.
     let (gpu, loaded, style) = std::thread::scope(|scope| {
@@ -149,9 +194,12 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         let loaded: Result<Loaded, Failure> = inputs::load_scenes(&args.scenes, &options);
         (gpu.join(), loaded, style)
     });
+    let (gpu, device_ms) = gpu.map_err(|_| Failure::from(GpuError::NoAdapter))?;
+    if args.renderer == Renderer::Auto && matches!(gpu, Err(GpuError::NoAdapter)) {
+        return exact::run_instead(args, &options);
+    }
     let (style, loaded) = (style?, loaded?);
     inputs::check_outputs(args.outputs(), &files_read(&style, &loaded.scene))?;
-    let (gpu, device_ms) = gpu.map_err(|_| Failure::from(GpuError::NoAdapter))?;
     let gpu = Arc::new(gpu?);
     inputs::print_warnings(&style, &loaded.scene, &args.scenes);
     let mut engine = Engine::new(gpu, loaded.scene, style);
@@ -216,7 +264,7 @@ pub(super) struct Drawn {
 /// Draws one picture and writes it, unless it `is_unwanted` before it is done.
 pub(super) fn draw(engine: &mut Engine, args: &Args, is_unwanted: &dyn Fn() -> bool) -> Result<Drawn, Failure> {
     let request = args.request();
-    let steps = if Engine::is_tiled(&request) { Engine::num_tiles(&request) } else { args.samples };
+    let steps = if Engine::is_tiled(&request) { Engine::num_tiles(&request) } else { request.samples };
     let bar = progress_bar(u64::from(steps), args.json);
     let drawn = draw_to(engine, &request, args.output.as_deref(), &mut |done| {
         bar.set_position(u64::from(done));
@@ -309,7 +357,7 @@ pub(super) fn describe(
         "scenes": args.scenes,
         "style": args.style,
         "size": args.size.0,
-        "samples": args.samples,
+        "samples": args.request().samples,
         "adapter": info.name,
         "driver": format!("{} {}", info.driver, info.driver_info),
         "renderer": "gpu",

@@ -5,7 +5,6 @@ use std::collections::HashMap;
 use super::catalog::{Catalog, CatalogEntry, Role};
 use super::error::{Notice, Place, Problem};
 use super::hint::{Hint, quote};
-use super::param::Param;
 use super::read::{Reader, wrong_type, wrong_type_but};
 use super::style::{EffectUse, Rule};
 use super::syntax::{Member, Node, Tree};
@@ -151,8 +150,9 @@ impl<'a> Shaders<'a> {
             used.values = reader.table(&format!("shader {}", quote(entry.name)), properties, entry.params);
             return used;
         }
-        // Its properties are not known yet: take those that what stands in shares with it, and any others as they are.
-        for member in properties.iter().filter(|member| SHARED.contains(&member.key.as_str())) {
+        // Not all of its properties are known yet: take those that are, or that what stands in shares with it, and leave others.
+        let is_known = |member: &&Member| entry.role == Role::PostEffect || SHARED.contains(&member.key.as_str());
+        for member in properties.iter().filter(is_known) {
             if let Some(index) = used.values.params().iter().position(|param| param.name == member.key) {
                 reader.set(&mut used.values, index, &member.value);
             }
@@ -164,7 +164,6 @@ impl<'a> Shaders<'a> {
     fn with_defaults(&self, reader: &mut Reader<'_>, entry: &CatalogEntry, place: Place) -> ShaderUse {
         let name = entry.name.to_owned();
         let basic = self.catalog.basic();
-        let no_params: &'static [Param] = &[];
         let (drawing, params, stands_in_for) = match (entry.drawn, entry.role) {
             (true, _) => (entry.name, entry.params, None),
             (false, Role::Object) => {
@@ -173,7 +172,7 @@ impl<'a> Shaders<'a> {
             }
             (false, Role::PostEffect) => {
                 reader.warn(place, Notice::EffectNotDrawn { name: name.clone() });
-                (entry.name, no_params, None)
+                (entry.name, entry.params, None)
             }
         };
         ShaderUse {

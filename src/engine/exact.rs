@@ -11,8 +11,8 @@ use crate::effects::focus::FOCUS;
 use crate::frame::objects::DrawList;
 use crate::frame::{MAX_LIGHTS, Materials};
 use crate::reference::{
-    self, BrokenOff, Cylinder, HullLook, Lens, Look, Material, Meshes, Occlusion, Optics, Part, Picture, Settings, Shade, Sphere,
-    World,
+    self, BrokenOff, Cylinder, HullLook, Lens, Look, Material, Meshes, Occlusion, Optics, Part, Picture, Settings,
+    Shade, Sphere, World,
 };
 use crate::scene::{Camera, Image, Pixels, Scene};
 use crate::shading::{SHADERS, basic::BasicMaterial, toon::ToonMaterial};
@@ -46,6 +46,11 @@ impl Exact {
     pub fn new(scene: Scene, style: Style, threads: Option<usize>) -> Exact {
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         Exact { content: Content::new(Arc::new(scene), Arc::new(style)), threads: threads.unwrap_or_else(cores) }
+    }
+
+    /// Threads that it draws on.
+    pub fn threads(&self) -> usize {
+        self.threads
     }
 
     /// Whether every pixel of the picture covers what is behind it.
@@ -91,7 +96,10 @@ impl Exact {
         };
         let lengths = &drawn.lengths;
         let occlusion = effect("ssaoPost")
-            .map(|values| Occlusion { radius: lengths.world(values.length("radius")), intensity: values.number("intensity") })
+            .map(|values| Occlusion {
+                radius: lengths.world(values.length("radius")),
+                intensity: values.number("intensity"),
+            })
             .filter(|occlusion| occlusion.radius > 0.0 && occlusion.intensity > 0.0);
         let lens = effect("dofPost").and_then(|values| {
             let px = |length| {
@@ -160,7 +168,8 @@ fn lens(
         Some(Value::Choice(index)) if FOCUS[*index] == "center" => middle,
         _ => 0.5 * (depth(sharp_from) + depth(sharp_to)),
     };
-    let farther = [depth(first), depth(last)].into_iter().max_by(|a, b| (a - focus).abs().total_cmp(&(b - focus).abs()))?;
+    let farther =
+        [depth(first), depth(last)].into_iter().max_by(|a, b| (a - focus).abs().total_cmp(&(b - focus).abs()))?;
     Lens::new(optics, focus, farther, px(values.length("blur")))
 }
 
@@ -184,7 +193,8 @@ fn shades(materials: &Materials, style: &Style, used: &[super::build::MaterialUs
         let [hull_r, hull_g, hull_b, _] = material.hull_color;
         Material {
             base_color: (covers > 0.5).then(|| Vec3::new(r, g, b).as_dvec3()),
-            hull: (width.0 + width.1 > 0.0).then(|| HullLook { color: Vec3::new(hull_r, hull_g, hull_b).as_dvec3(), width }),
+            hull: (width.0 + width.1 > 0.0)
+                .then(|| HullLook { color: Vec3::new(hull_r, hull_g, hull_b).as_dvec3(), width }),
             opacity: values.number("opacity"),
             shade: shade.unwrap_or(Shade::Unlit),
         }
@@ -202,7 +212,8 @@ fn world(list: DrawList, camera: &Camera, content: &Content, materials: &[Materi
         look: Look { color: unpacked(atom.color), material: atom.material, group: atom.group },
     });
     let cylinders = list.connectors.iter().map(|connector| {
-        let look = |color: [u32; 2]| Look { color: unpacked(color), material: connector.material, group: color[1] >> 16 };
+        let look =
+            |color: [u32; 2]| Look { color: unpacked(color), material: connector.material, group: color[1] >> 16 };
         Cylinder {
             ends: [place(connector.a_world), place(connector.b_world)],
             radius: f64::from(connector.radius),

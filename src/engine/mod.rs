@@ -15,8 +15,9 @@ use std::time::Instant;
 
 use glam::DVec3;
 
+use crate::config::param::Param;
 use crate::config::{CatalogEntry, LightKind, ObjectKind, Role, Shadow, Style};
-use crate::effects::{EFFECTS, EffectContext, effect_index};
+use crate::effects::{self, EFFECTS, EffectContext, effect_index};
 use crate::frame::objects::DrawList;
 use crate::frame::{self, Aovs, Effect, FrameInput, Materials, Renderer, TargetBytes};
 use crate::gpu::PassTimes;
@@ -32,10 +33,10 @@ pub use live::{Part, Refusal, Reload, ReloadTimes, Sources, source_tree_shaders}
 pub use tiles::TileError;
 
 /// Effects and shaders of the contract that this version names but does not draw.
-const NOT_DRAWN: [(&str, Role, &str); 3] = [
-    ("curvature", Role::Object, "Glass that is clearer where the surface is flat."),
-    ("ssaoPost", Role::PostEffect, "Darkens creases and contacts."),
-    ("dofPost", Role::PostEffect, "Blurs what is out of focus."),
+const NOT_DRAWN: [(&str, Role, &str, &[Param]); 3] = [
+    ("curvature", Role::Object, "Glass that is clearer where the surface is flat.", &[]),
+    ("ssaoPost", Role::PostEffect, "Darkens creases and contacts.", effects::occlusion::PARAMS),
+    ("dofPost", Role::PostEffect, "Blurs what is out of focus.", effects::focus::PARAMS),
 ];
 
 /// Types of objects that this version draws.
@@ -47,7 +48,8 @@ pub fn catalog() -> Vec<CatalogEntry> {
     let effects = EFFECTS.iter().map(|effect| (effect.name(), Role::PostEffect, effect.doc(), effect.params()));
     let drawn =
         drawn.chain(effects).map(|(name, role, doc, params)| CatalogEntry { name, role, doc, params, drawn: true });
-    let named = NOT_DRAWN.iter().map(|&(name, role, doc)| CatalogEntry { name, role, doc, params: &[], drawn: false });
+    let named =
+        NOT_DRAWN.iter().map(|&(name, role, doc, params)| CatalogEntry { name, role, doc, params, drawn: false });
     drawn.chain(named).collect()
 }
 

@@ -65,7 +65,8 @@ impl Basic {
         let balanced = self.balanced(base_color, normal.dot(to_viewer));
         let mut radiance = DVec3::ZERO;
         for light in lights.iter().filter(|light| light.visibility > 0.0) {
-            radiance += light.radiance * light.visibility * self.reflected(&balanced, normal, to_viewer, light.to_light);
+            radiance +=
+                light.radiance * light.visibility * self.reflected(&balanced, normal, to_viewer, light.to_light);
         }
         if ambient.max_element() > 0.0 {
             radiance += ambient * self.environment(&balanced, normal, to_viewer, studio, num_directions, seed);
@@ -211,8 +212,7 @@ mod tests {
             let basic = material(smoothness, metallic);
             for degrees in [0.0f64, 30.0, 60.0, 80.0] {
                 let to_viewer = DVec3::new(degrees.to_radians().sin(), 0.0, degrees.to_radians().cos());
-                let light =
-                    basic.radiance(DVec3::ONE, DVec3::Z, to_viewer, &[], &Studio::white(), DVec3::ONE, 4096, 1);
+                let light = basic.radiance(DVec3::ONE, DVec3::Z, to_viewer, &[], &Studio::white(), DVec3::ONE, 4096, 1);
                 assert!((light - DVec3::ONE).abs().max_element() < 0.01, "{smoothness} {metallic} {degrees}: {light}");
             }
         }
@@ -221,7 +221,8 @@ mod tests {
     #[test]
     fn a_light_that_a_white_matt_surface_faces_lights_it_to_about_one() {
         let light = Arriving { to_light: DVec3::Z, radiance: DVec3::ONE, visibility: 1.0 };
-        let lit = material(0.0, 0.0).radiance(DVec3::ONE, DVec3::Z, DVec3::Z, &[light], &Studio::white(), DVec3::ZERO, 0, 0);
+        let lit =
+            material(0.0, 0.0).radiance(DVec3::ONE, DVec3::Z, DVec3::Z, &[light], &Studio::white(), DVec3::ZERO, 0, 0);
         assert!((lit.x - 1.0).abs() < 0.1, "{lit}");
     }
 }

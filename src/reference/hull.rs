@@ -29,10 +29,19 @@ pub struct Outline {
 
 #[derive(Debug, Clone, Copy)]
 enum Shape {
-    Sphere { center: DVec3, radius: f64 },
-    Cone { ends: [DVec3; 2], radii: [f64; 2] },
+    Sphere {
+        center: DVec3,
+        radius: f64,
+    },
+    Cone {
+        ends: [DVec3; 2],
+        radii: [f64; 2],
+    },
     /// Wound so that what faces the eye is the near side, which does not show; `behind` is how much deeper each corner counts.
-    Facet { corners: [DVec3; 3], behind: DVec3 },
+    Facet {
+        corners: [DVec3; 3],
+        behind: DVec3,
+    },
 }
 
 impl Outline {
@@ -69,13 +78,18 @@ impl Outline {
 
 /// The outlines of all objects whose material has one.
 pub fn outlines(world: &World, materials: &[Material], optics: &Optics) -> Vec<Outline> {
-    let width = |material: u32| materials.get(material as usize).and_then(|material| material.hull).map(|hull| hull.width);
+    let width =
+        |material: u32| materials.get(material as usize).and_then(|material| material.hull).map(|hull| hull.width);
     let (spheres, cylinders) = world.objects();
     let mut outlines = Vec::new();
     for (index, ball) in (0u64..).zip(spheres) {
         if let Some(width) = width(ball.look.material) {
             let (center, radius) = around_sphere(optics, ball.center, ball.radius, width);
-            outlines.push(Outline { shape: Shape::Sphere { center, radius }, material: ball.look.material, owner: 1 << 32 | index });
+            outlines.push(Outline {
+                shape: Shape::Sphere { center, radius },
+                material: ball.look.material,
+                owner: 1 << 32 | index,
+            });
         }
     }
     for (index, rod) in (0u64..).zip(cylinders) {
@@ -111,7 +125,11 @@ pub fn outlines(world: &World, materials: &[Material], optics: &Optics) -> Vec<O
             let [a, b, c] = vertices.map(moved);
             // A mirrored part is wound the other way.
             let [b, c] = if volume < 0.0 { [c, b] } else { [b, c] };
-            Outline { shape: Shape::Facet { corners: [a.0, b.0, c.0], behind: DVec3::new(a.1, b.1, c.1) }, material, owner: 3 << 32 | index }
+            Outline {
+                shape: Shape::Facet { corners: [a.0, b.0, c.0], behind: DVec3::new(a.1, b.1, c.1) },
+                material,
+                owner: 3 << 32 | index,
+            }
         }));
     }
     outlines

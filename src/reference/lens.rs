@@ -6,9 +6,9 @@
 
 use glam::DVec2;
 
+use super::Optics;
 use super::primitive::Ray;
 use super::sampling::disc_point;
-use super::Optics;
 
 /// A lens before a camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,8 +58,13 @@ mod tests {
     use glam::{DVec3, Mat4, Vec2};
 
     fn optics(orthographic: bool) -> Optics {
-        let camera =
-            Camera { view_from_world: Mat4::IDENTITY, half_extent: Vec2::splat(0.5), orthographic, near: 0.1, far: 100.0 };
+        let camera = Camera {
+            view_from_world: Mat4::IDENTITY,
+            half_extent: Vec2::splat(0.5),
+            orthographic,
+            near: 0.1,
+            far: 100.0,
+        };
         Optics::new(&camera, [400, 400])
     }
 

@@ -10,9 +10,9 @@
 
 mod basic;
 mod hull;
+mod lens;
 mod light;
 mod occlusion;
-mod lens;
 mod primitive;
 mod render;
 mod sampling;
@@ -103,7 +103,8 @@ impl Optics {
 
     /// The line of sight of a place in the picture, in pixels from the top left; `t` of it is depth.
     pub fn ray(&self, place_px: glam::DVec2) -> Ray {
-        let plane = (glam::DVec2::new(2.0, -2.0) * place_px / self.size_px + glam::DVec2::new(-1.0, 1.0)) * self.half_extent;
+        let plane =
+            (glam::DVec2::new(2.0, -2.0) * place_px / self.size_px + glam::DVec2::new(-1.0, 1.0)) * self.half_extent;
         if self.orthographic {
             Ray { origin: plane.extend(0.0), direction: DVec3::NEG_Z }
         } else {

@@ -90,7 +90,8 @@ pub fn render<E: From<BrokenOff>>(
                 }
                 let left = column * TILE_PX;
                 let tile_width = TILE_PX.min(width - left);
-                let pixel = |index: u32| picture.pixel([left + index % tile_width, top + index / tile_width], side, &studio);
+                let pixel =
+                    |index: u32| picture.pixel([left + index % tile_width, top + index / tile_width], side, &studio);
                 let tile: Vec<[f32; 4]> = (0..tile_width * rows).map(pixel).collect();
                 let Ok(mut band) = band.lock() else { break };
                 for (row, values) in tile.chunks_exact(tile_width as usize).enumerate() {

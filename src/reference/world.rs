@@ -10,7 +10,7 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::ray::RayHit;
-use obvhs::{BvhBuildParams, Boundable};
+use obvhs::{Boundable, BvhBuildParams};
 
 use super::hull::Outline;
 use super::primitive::{Ray, cone_span, cylinder_normal, sphere_span, triangle_hit};
@@ -184,12 +184,14 @@ impl World {
         if let Some(meshes) = meshes {
             world.add_meshes(meshes, view_from_world);
         }
-        let corners = world.triangles.iter().flat_map(|triangle| triangle.corners).map(|corner| f64::from(corner.length()));
+        let corners =
+            world.triangles.iter().flat_map(|triangle| triangle.corners).map(|corner| f64::from(corner.length()));
         let balls = world.spheres.iter().map(|ball| ball.center.distance(center) + ball.radius);
         let rods = world.cylinders.iter().flat_map(|rod| rod.ends.map(|end| end.distance(center) + rod.radius * 1.5));
         world.radius = corners.chain(balls).chain(rods).fold(f64::MIN_POSITIVE, f64::max);
         let slack = world.radius * 1e-6;
-        let balls = world.spheres.iter().map(|ball| boxed(ball.center - ball.radius, ball.center + ball.radius, center, slack));
+        let balls =
+            world.spheres.iter().map(|ball| boxed(ball.center - ball.radius, ball.center + ball.radius, center, slack));
         let rods = world.cylinders.iter().map(|rod| {
             let [a, b] = rod.ends;
             boxed(a.min(b) - rod.radius, a.max(b) + rod.radius, center, slack)
@@ -210,9 +212,11 @@ impl World {
             })
             .collect();
         world.outline_tree = tree(&bounds);
-        let corners = world.outlines.iter().map(Outline::bounds).map(|(low, high)| {
-            (low - center).abs().max((high - center).abs()).length()
-        });
+        let corners = world
+            .outlines
+            .iter()
+            .map(Outline::bounds)
+            .map(|(low, high)| (low - center).abs().max((high - center).abs()).length());
         world.radius = corners.fold(world.radius, f64::max);
         world
     }
@@ -224,18 +228,22 @@ impl World {
             let of_scene = &assembly.parts[part.part as usize];
             let world_from_shape = DAffine3::from_mat4(glam::Mat4::from(of_scene.world_from_shape).as_dmat4());
             let view_from_shape = view_from_world * world_from_shape;
-            let [x, y, z] = [view_from_shape.matrix3.x_axis, view_from_shape.matrix3.y_axis, view_from_shape.matrix3.z_axis];
+            let [x, y, z] =
+                [view_from_shape.matrix3.x_axis, view_from_shape.matrix3.y_axis, view_from_shape.matrix3.z_axis];
             // Cofactors, which exist for every matrix.
             let normals = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
             let side = if view_from_shape.matrix3.determinant() < 0.0 { -1.0 } else { 1.0 };
             placed.push(Placed { view_from_shape, normals: normals * side });
             let shape = &assembly.shapes[of_scene.shape as usize];
             let center = self.center;
-            let corner =
-                |vertex: u32| (view_from_shape.transform_point3(shape.positions[vertex as usize].as_dvec3()) - center).as_vec3();
-            self.triangles.extend(
-                (0..).zip(&shape.triangles).map(|(index, vertices)| Triangle { corners: vertices.map(corner), part: number, index }),
-            );
+            let corner = |vertex: u32| {
+                (view_from_shape.transform_point3(shape.positions[vertex as usize].as_dvec3()) - center).as_vec3()
+            };
+            self.triangles.extend((0..).zip(&shape.triangles).map(|(index, vertices)| Triangle {
+                corners: vertices.map(corner),
+                part: number,
+                index,
+            }));
         }
         self.meshes = Some((meshes, placed));
     }
@@ -414,7 +422,8 @@ impl World {
         let shape = &meshes.scene.assembly.shapes[of_scene.shape as usize];
         let vertices = shape.triangles[triangle.index as usize];
         let normals = vertices.map(|vertex| {
-            (placed[triangle.part as usize].normals * unpack_normal(shape.normals[vertex as usize]).as_dvec3()).normalize_or(facet)
+            (placed[triangle.part as usize].normals * unpack_normal(shape.normals[vertex as usize]).as_dvec3())
+                .normalize_or(facet)
         });
         let mixed = shares.x * normals[0] + shares.y * normals[1] + shares.z * normals[2];
         let mixed = mixed.normalize_or(facet);
@@ -429,7 +438,8 @@ impl World {
         surface.material = part.look.material;
         surface.color = part.look.color;
         if part.has_vertex_colors {
-            let colors = vertices.map(|vertex| shape.colors[vertex as usize].map(linear_from_srgb)).map(DVec3::from_array);
+            let colors =
+                vertices.map(|vertex| shape.colors[vertex as usize].map(linear_from_srgb)).map(DVec3::from_array);
             surface.color *= shares.x * colors[0] + shares.y * colors[1] + shares.z * colors[2];
         }
         surface

@@ -1,0 +1,140 @@
+//! `restyle render --renderer reference`: stills by exact ray casts.
+
+use std::io;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::render::{Args, cannot_write, files_read};
+use super::{Failure, answer, inputs, tell};
+use crate::config::{Notice, Style};
+use crate::engine::Request;
+use crate::engine::exact::{DRAWN_EFFECTS, Exact, ExactError};
+use crate::scene::{LoadOptions, RowsHeader, write_png_rows};
+
+/// Samples of a still.
+const SAMPLES: u32 = 64;
+
+/// Draws where there is no adapter, and says so.
+pub(super) fn run_instead(args: &Args, options: &LoadOptions) -> Result<(), Failure> {
+    if args.is_watched() {
+        return Err(crate::engine::GpuError::NoAdapter.into());
+    }
+    tell(instead());
+    run(args, options)
+}
+
+/// The line that says what draws where there is no adapter.
+pub(super) fn instead() -> &'static str {
+    "no graphics adapter was found: the reference renderer draws, exactly and more slowly, on all cores"
+}
+
+/// Draws what the command line asks for.
+pub(super) fn run(args: &Args, options: &LoadOptions) -> Result<(), Failure> {
+    if args.is_watched() || args.has_aovs() {
+        return Err(Failure::usage("--watch and --aov are of the adapter: give them without --renderer reference"));
+    }
+    let start = Instant::now();
+    let style = load_style(args.style())?;
+    let loaded = inputs::load_scenes(args.scenes(), options)?;
+    inputs::check_outputs(args.outputs(), &files_read(&style, &loaded.scene))?;
+    inputs::print_warnings(&style, &loaded.scene, args.scenes());
+    let atoms = loaded.scene.molecule.atoms.len();
+    let triangles = loaded.scene.assembly.num_triangles();
+    let exact = Exact::new(loaded.scene, style, None);
+    let stop = stopped_by_interrupt();
+    let request = Request { samples: args.samples(SAMPLES), ..args.request() };
+    let mut frame_ms = Vec::new();
+    let count = args.turntable();
+    let outputs: Vec<_> = args.outputs().map(Some).collect();
+    let pictures = if outputs.is_empty() { vec![None] } else { outputs };
+    for (index, output) in (0u32..).zip(pictures) {
+        let turn_deg = count.map_or(0.0, |count| 360.0 * index as f32 / count as f32);
+        let frame = Instant::now();
+        draw_to(&exact, &Request { turn_deg, ..request }, output.as_deref(), args.json(), &stop)?;
+        frame_ms.push(frame.elapsed().as_secs_f64() * 1e3);
+    }
+    if args.json() {
+        let line = serde_json::json!({
+            "scene": args.scenes().join(", "),
+            "scenes": args.scenes(),
+            "style": args.style(),
+            "size": request.size,
+            "samples": request.samples,
+            "adapter": null,
+            "renderer": "reference",
+            "threads": exact.threads(),
+            "load_ms": loaded.ms,
+            "frame_ms": frame_ms,
+            "atoms": atoms,
+            "mesh_triangles": triangles,
+            "total_ms": start.elapsed().as_secs_f64() * 1e3,
+        });
+        answer(line)?;
+    }
+    Ok(())
+}
+
+/// A style without the warnings of what only the adapter does not draw.
+pub(super) fn load_style(name: &str) -> Result<Style, Failure> {
+    let mut style = inputs::load_style(name)?;
+    style.warnings.retain(|warning| match &warning.notice {
+        Notice::EffectNotDrawn { name } => !DRAWN_EFFECTS.contains(&name.as_str()),
+        Notice::PropertyNotDrawn { name } => name != "opacity",
+        _ => true,
+    });
+    Ok(style)
+}
+
+/// Draws one picture, and writes it where an output is given.
+fn draw_to(
+    exact: &Exact,
+    request: &Request,
+    output: Option<&Path>,
+    is_quiet: bool,
+    stop: &AtomicBool,
+) -> Result<(), Failure> {
+    let bar = if is_quiet { ProgressBar::hidden() } else { ProgressBar::new(u64::from(request.size[1])) };
+    let look = ProgressStyle::with_template("{bar:40} {percent} % of the rows, {eta} left");
+    bar.set_style(look.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let mut progress = |rows| {
+        bar.set_position(u64::from(rows));
+        if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    let broken_off = || Failure::interrupted();
+    let drawn = match output {
+        None => exact.draw_rows(request, &mut progress, &mut |_| Ok(())).map_err(|_| broken_off()),
+        Some(output) => {
+            let header = RowsHeader { size: request.size, opaque: exact.is_opaque(request), wide: request.wide };
+            let mut is_broken_off = false;
+            let written = write_png_rows(output, &header, |sink| match exact.draw_rows(request, &mut progress, sink) {
+                Ok(()) => Ok(()),
+                Err(ExactError::Sink(error)) => Err(error),
+                Err(ExactError::BrokenOff) => {
+                    is_broken_off = true;
+                    Err(io::ErrorKind::Interrupted.into())
+                }
+            });
+            match written {
+                Ok(()) => Ok(()),
+                Err(_) if is_broken_off => Err(broken_off()),
+                Err(error) => Err(Failure::input(cannot_write(output, &error))),
+            }
+        }
+    };
+    bar.finish_and_clear();
+    drawn
+}
+
+/// A flag that an interrupt sets: a picture is then left out whole.
+pub(super) fn stopped_by_interrupt() -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let set = Arc::clone(&stop);
+    // Without a handler an interrupt ends the process, which leaves no half picture either.
+    let _ = ctrlc::set_handler(move || set.store(true, Ordering::Relaxed));
+    stop
+}
