@@ -39,7 +39,8 @@ pub(super) fn run(args: &Args, options: &LoadOptions) -> Result<(), Failure> {
         return Err(Failure::usage("--watch and --aov are of the adapter: give them without --renderer reference"));
     }
     let start = Instant::now();
-    let style = load_style(args.style())?;
+    let mut style = inputs::load_style(args.style())?;
+    keep_warnings(&mut style);
     let loaded = inputs::load_scenes(args.scenes(), options)?;
     inputs::check_outputs(args.outputs(), &files_read(&style, &loaded.scene))?;
     inputs::print_warnings(&style, &loaded.scene, args.scenes());
@@ -79,15 +80,13 @@ pub(super) fn run(args: &Args, options: &LoadOptions) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A style without the warnings of what only the adapter does not draw.
-pub(super) fn load_style(name: &str) -> Result<Style, Failure> {
-    let mut style = inputs::load_style(name)?;
+/// Leaves of a style's warnings those that hold for the reference renderer, too.
+pub(super) fn keep_warnings(style: &mut Style) {
     style.warnings.retain(|warning| match &warning.notice {
         Notice::EffectNotDrawn { name } => !DRAWN_EFFECTS.contains(&name.as_str()),
         Notice::PropertyNotDrawn { name } => name != "opacity",
         _ => true,
     });
-    Ok(style)
 }
 
 /// Draws one picture, and writes it where an output is given.

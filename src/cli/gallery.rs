@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 use std::io::Write as _;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -9,10 +10,11 @@ use std::time::Instant;
 use super::inputs::{self, Size};
 use super::messages::clean;
 use super::render::{cannot_write, progress_bar};
-use super::{Failure, answer, print_message};
+use super::{Failure, answer, exact, print_message, tell};
 use crate::config::Style;
-use crate::engine::{Engine, Gpu, Request};
-use crate::scene::{LoadOptions, Scene, write_whole};
+use crate::engine::exact::Exact;
+use crate::engine::{Engine, Gpu, GpuError, Request};
+use crate::scene::{Image, LoadOptions, Scene, write_whole};
 use crate::shipped::{LOOKS, SCENES, Shipped};
 
 #[derive(Debug, clap::Args)]
@@ -26,11 +28,69 @@ pub(super) struct Args {
     #[arg(short, long, value_name = "DIR", default_value = "gallery")]
     output: PathBuf,
     /// Width and height of each picture in pixels
-    #[arg(long, value_name = "WxH", default_value = "640x640")]
-    size: Size,
-    /// Samples a pixel
-    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=1024))]
-    samples: u32,
+    /// 640x640 by default, 480x480 without an adapter
+    #[arg(long, value_name = "WxH")]
+    size: Option<Size>,
+    /// Samples a pixel: 16 by default, 9 without an adapter
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1024))]
+    samples: Option<u32>,
+}
+
+/// What draws the pictures.
+enum Drawn {
+    /// An adapter, and what draws on it once there is something.
+    Gpu(Arc<Gpu>, Option<Box<Engine>>),
+    /// The reference renderer.
+    Exact,
+}
+
+impl Drawn {
+    /// The adapter; the reference renderer where there is none.
+    fn open() -> Result<Drawn, Failure> {
+        match Gpu::open() {
+            Ok(gpu) => Ok(Drawn::Gpu(Arc::new(gpu), None)),
+            Err(GpuError::NoAdapter) => Ok(Drawn::Exact),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    fn name(&self) -> String {
+        match self {
+            Drawn::Gpu(gpu, _) => gpu.info.name.clone(),
+            Drawn::Exact => "the reference renderer".to_owned(),
+        }
+    }
+
+    /// What is drawn where the command line does not say.
+    fn request(&self, args: &Args) -> Request {
+        let (size, samples) = match self {
+            Drawn::Gpu(..) => ([640, 640], 16),
+            Drawn::Exact => ([480, 480], 9),
+        };
+        Request::new(args.size.map_or(size, |size| size.0), args.samples.unwrap_or(samples))
+    }
+
+    /// One picture; `is_new` where the scene is another one than before.
+    fn still(&mut self, scene: &Scene, style: &Style, is_new: bool, request: &Request) -> Result<Image, Failure> {
+        let (gpu, engine) = match self {
+            Drawn::Gpu(gpu, engine) => (gpu, engine),
+            Drawn::Exact => {
+                let exact = Exact::new(scene.clone(), style.clone(), None).as_draft();
+                return exact.still(request, &mut |_| ControlFlow::Continue(())).map_err(|_| Failure::interrupted());
+            }
+        };
+        let engine = match engine {
+            Some(engine) => {
+                if is_new {
+                    engine.set_scene(scene.clone());
+                }
+                engine.set_style(style.clone());
+                engine
+            }
+            none => none.insert(Box::new(Engine::new(Arc::clone(gpu), scene.clone(), style.clone()))),
+        };
+        Ok(engine.still(request)?)
+    }
 }
 
 /// One row or column of the sheet: what it is called, and the stem of its file names.
@@ -57,6 +117,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         styles.push(Named { label: stem.clone(), stem, value: inputs::load_style(name)? });
     }
     let mut scenes: Vec<Named<Scene>> = Vec::new();
+    let mut drawn = Drawn::open()?;
+    if matches!(drawn, Drawn::Exact) {
+        styles.iter_mut().for_each(|style| exact::keep_warnings(&mut style.value));
+    }
     // What every cell of a look or a scene shares is told once.
     let mut told: Vec<String> = Vec::new();
     for name in &scene_names {
@@ -76,43 +140,34 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         .chain(styles.iter().flat_map(|style| style.value.files.iter().map(|file| ("style", file.as_path()))))
         .collect();
     inputs::check_outputs(outputs.iter().cloned(), &given)?;
-    let gpu = Arc::new(Gpu::open()?);
-    let adapter = gpu.info.name.clone();
+    let (renderer, request) = (drawn.name(), drawn.request(args));
     std::fs::create_dir_all(&args.output).map_err(|error| Failure::input(cannot_write(&args.output, &error)))?;
 
     let mut seen = std::collections::HashSet::new();
     told.into_iter().filter(|line| seen.insert(line.clone())).for_each(|message| print_message(&message));
+    if matches!(drawn, Drawn::Exact) {
+        let [width, height] = request.size;
+        tell(format!("{}: pictures of {width}x{height}, {} samples a pixel", exact::instead(), request.samples));
+    }
     let bar = progress_bar((styles.len() * scenes.len()) as u64 + 9, false);
     bar.set_length((styles.len() * scenes.len()) as u64);
-    let mut engine: Option<Engine> = None;
     for scene in &scenes {
-        let mut fresh_scene = true;
+        let mut is_new = true;
         for style in &styles {
-            let engine = match &mut engine {
-                Some(engine) => {
-                    if fresh_scene {
-                        engine.set_scene(scene.value.clone());
-                    }
-                    engine.set_style(style.value.clone());
-                    engine
-                }
-                none => none.insert(Engine::new(Arc::clone(&gpu), scene.value.clone(), style.value.clone())),
-            };
-            fresh_scene = false;
-            let request = Request::new(args.size.0, args.samples);
+            let image = drawn.still(&scene.value, &style.value, is_new, &request)?;
+            is_new = false;
             let file = args.output.join(file_name(scene, style));
-            let image = engine.still(&request)?;
             image.write_png(&file).map_err(|error| Failure::input(cannot_write(&file, &error)))?;
             bar.inc(1);
         }
     }
     bar.finish_and_clear();
     let sheet = args.output.join("index.html");
-    let page = contact_sheet(&scenes, &styles, args, &adapter);
+    let page = contact_sheet(&scenes, &styles, &request, &renderer);
     write_whole(&sheet, |file| file.write_all(page.as_bytes()))
         .map_err(|error| Failure::input(cannot_write(&sheet, &error)))?;
     answer(format_args!(
-        "{} pictures in {:.1} s on {adapter}; open {}",
+        "{} pictures in {:.1} s on {renderer}; open {}",
         styles.len() * scenes.len(),
         start.elapsed().as_secs_f64(),
         sheet.display()
@@ -143,16 +198,16 @@ fn file_name<A, B>(scene: &Named<A>, style: &Named<B>) -> String {
 }
 
 /// The page: one row for each scene, one column for each look, as the published table has them.
-fn contact_sheet(scenes: &[Named<Scene>], styles: &[Named<Style>], args: &Args, adapter: &str) -> String {
-    let [width, height] = args.size.0;
+fn contact_sheet(scenes: &[Named<Scene>], styles: &[Named<Style>], request: &Request, renderer: &str) -> String {
+    let [width, height] = request.size;
     let mut page = format!(
         "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n\
          <title>restyle gallery</title>\n<style>\n{CSS}</style>\n<h1>restyle</h1>\n\
          <p>{} looks on {} scenes, {width}x{height}, {} samples a pixel, drawn on {}.</p>\n<table>\n<thead><tr><th></th>",
         styles.len(),
         scenes.len(),
-        args.samples,
-        escaped(adapter)
+        request.samples,
+        escaped(renderer)
     );
     for style in styles {
         let _ = write!(page, "<th scope=\"col\">{}</th>", escaped(&style.label));

@@ -11,8 +11,8 @@ use crate::effects::focus::FOCUS;
 use crate::frame::objects::DrawList;
 use crate::frame::{MAX_LIGHTS, Materials};
 use crate::reference::{
-    self, BrokenOff, Cylinder, HullLook, Lens, Look, Material, Meshes, Occlusion, Optics, Part, Picture, Settings,
-    Shade, Sphere, World,
+    self, BrokenOff, Cylinder, HullLook, Lens, Look, Material, Meshes, Occlusion, Optics, Part, Picture, RowSink,
+    Settings, Shade, Sphere, World,
 };
 use crate::scene::{Camera, Image, Pixels, Scene};
 use crate::shading::{SHADERS, basic::BasicMaterial, toon::ToonMaterial};
@@ -24,6 +24,7 @@ pub const DRAWN_EFFECTS: &[&str] = &["ssaoPost", "dofPost"];
 pub struct Exact {
     content: Content,
     threads: usize,
+    draft: bool,
 }
 
 /// Why a picture was not finished.
@@ -45,7 +46,16 @@ impl Exact {
     /// A renderer of this scene in this style. `threads`: as many as there are cores, unless it says.
     pub fn new(scene: Scene, style: Style, threads: Option<usize>) -> Exact {
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-        Exact { content: Content::new(Arc::new(scene), Arc::new(style)), threads: threads.unwrap_or_else(cores) }
+        Exact {
+            content: Content::new(Arc::new(scene), Arc::new(style)),
+            threads: threads.unwrap_or_else(cores),
+            draft: false,
+        }
+    }
+
+    /// Draws with fewer rays where there are fewer samples: quick, and grainy in soft light.
+    pub fn as_draft(self) -> Exact {
+        Exact { draft: true, ..self }
     }
 
     /// Threads that it draws on.
@@ -72,15 +82,11 @@ impl Exact {
         self.light_rows(request, progress, &mut |rows| sink(&encoded(rows, request.wide)).map_err(ExactError::Sink))
     }
 
-    /// The same as premultiplied linear light.
-    ///
-    /// # Errors
-    /// As [`Exact::draw_rows`].
-    pub fn light_rows(
+    fn light_rows(
         &self,
         request: &Request,
         progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
-        sink: &mut dyn FnMut(&[[f32; 4]]) -> Result<(), ExactError>,
+        sink: &mut RowSink<'_, ExactError>,
     ) -> Result<(), ExactError> {
         let content = &self.content;
         let Resolved { list, materials, drawn } = resolve(content, None, request.size[1]);
@@ -117,7 +123,8 @@ impl Exact {
             lens,
             background: content.camera.background(request.transparent),
         };
-        let settings = Settings { size: request.size, samples: request.samples, threads: self.threads };
+        let settings =
+            Settings { size: request.size, samples: request.samples, draft: self.draft, threads: self.threads };
         reference::render(&picture, &settings, progress, sink)
     }
 

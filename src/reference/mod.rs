@@ -23,9 +23,9 @@ use glam::DVec3;
 
 pub use hull::outlines;
 pub use lens::Lens;
-pub use occlusion::Occlusion;
+pub use occlusion::{Occlusion, occluded};
 pub use primitive::Ray;
-pub use render::{BrokenOff, Picture, Settings, render};
+pub use render::{BrokenOff, Picture, RowSink, Settings, render};
 pub use world::{Cylinder, Hit, Look, Meshes, Object, Part, Sphere, Surface, World};
 
 use crate::scene::Camera;

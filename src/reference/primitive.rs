@@ -26,7 +26,7 @@ pub fn sphere_span(ray: Ray, center: DVec3, radius: f64) -> Option<[f64; 2]> {
     let off = to_center - middle * ray.direction;
     let left = radius * radius - off.length_squared();
     let half = (left * inverse).sqrt();
-    (left >= 0.0).then(|| [middle - half, middle + half])
+    (left >= 0.0).then_some([middle - half, middle + half])
 }
 
 /// Entry and exit of a truncated cone with flat caps, from `a` (radius `radii[0]`) to `b`; equal radii make a cylinder.
@@ -61,7 +61,7 @@ pub fn cone_span(ray: Ray, a: DVec3, b: DVec3, radii: [f64; 2]) -> Option<[f64; 
     } else if qc > 0.0 {
         return None;
     }
-    (enter <= leave).then(|| [enter + shift, leave + shift])
+    (enter <= leave).then_some([enter + shift, leave + shift])
 }
 
 /// Outward normal of a cylinder at a point of it: of its side, or of the cap that the point lies on.

@@ -22,6 +22,8 @@ const LEAST_LIGHT: f64 = 1.0 / 131_072.0;
 const SHADOW_RAYS: u32 = 256;
 const OCCLUSION_RAYS: u32 = 512;
 const ENVIRONMENT_DIRECTIONS: u32 = 1024;
+/// Samples from which on a draft takes no fewer of them.
+const WHOLE_SAMPLES: u32 = 64;
 
 /// What `sampling::seed` is asked for.
 const FOR_PLACE: u32 = 0;
@@ -55,6 +57,8 @@ pub struct Settings {
     pub size: [u32; 2],
     /// Samples a pixel; a square number is used, the next one up.
     pub samples: u32,
+    /// Fewer rays where there are fewer samples: quick, and grainy in soft light.
+    pub draft: bool,
     /// Threads; the picture does not depend on them.
     pub threads: usize,
 }
@@ -62,6 +66,9 @@ pub struct Settings {
 /// Whoever follows the progress asked to stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BrokenOff;
+
+/// Takes rows of premultiplied linear light, from the top.
+pub type RowSink<'a, E> = dyn FnMut(&[[f32; 4]]) -> Result<(), E> + 'a;
 
 /// Draws a picture and gives `sink` its rows from the top, some at a time: premultiplied linear light. `progress` hears the
 /// rows that are done.
@@ -72,7 +79,7 @@ pub fn render<E: From<BrokenOff>>(
     picture: &Picture<'_>,
     settings: &Settings,
     progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
-    sink: &mut dyn FnMut(&[[f32; 4]]) -> Result<(), E>,
+    sink: &mut RowSink<'_, E>,
 ) -> Result<(), E> {
     let [width, height] = settings.size;
     let studio = Studio::neutral();
@@ -90,8 +97,9 @@ pub fn render<E: From<BrokenOff>>(
                 }
                 let left = column * TILE_PX;
                 let tile_width = TILE_PX.min(width - left);
-                let pixel =
-                    |index: u32| picture.pixel([left + index % tile_width, top + index / tile_width], side, &studio);
+                let pixel = |index: u32| {
+                    picture.pixel([left + index % tile_width, top + index / tile_width], side, settings.draft, &studio)
+                };
                 let tile: Vec<[f32; 4]> = (0..tile_width * rows).map(pixel).collect();
                 let Ok(mut band) = band.lock() else { break };
                 for (row, values) in tile.chunks_exact(tile_width as usize).enumerate() {
@@ -117,8 +125,9 @@ pub fn render<E: From<BrokenOff>>(
 
 impl Picture<'_> {
     /// The mean of a pixel's samples over the background: premultiplied linear light.
-    fn pixel(&self, pixel: [u32; 2], side: u32, studio: &Studio) -> [f32; 4] {
+    fn pixel(&self, pixel: [u32; 2], side: u32, draft: bool, studio: &Studio) -> [f32; 4] {
         let count = side * side;
+        let shared_by = if draft { count.max(WHOLE_SAMPLES) } else { count };
         let (mut light, mut alpha) = (DVec3::ZERO, 0.0);
         for index in 0..count {
             // Once in each cell of a grid.
@@ -126,7 +135,7 @@ impl Picture<'_> {
             let cell = DVec2::new(f64::from(index % side), f64::from(index / side));
             let corner = DVec2::new(f64::from(pixel[0]), f64::from(pixel[1]));
             let place = corner + (cell + within) / f64::from(side);
-            let (color, covered) = self.sample(pixel, index, count, place, studio);
+            let (color, covered) = self.sample(pixel, index, shared_by, place, studio);
             light += color;
             alpha += covered;
         }
@@ -139,7 +148,7 @@ impl Picture<'_> {
     }
 
     /// Light along one line of sight, and the share of what is behind it that it covers.
-    fn sample(&self, pixel: [u32; 2], index: u32, count: u32, place: DVec2, studio: &Studio) -> (DVec3, f64) {
+    fn sample(&self, pixel: [u32; 2], index: u32, shared_by: u32, place: DVec2, studio: &Studio) -> (DVec3, f64) {
         let ray = match &self.lens {
             Some(lens) => {
                 // Spread over the pixel's samples, whichever cell each has.
@@ -170,7 +179,7 @@ impl Picture<'_> {
             let surface = self.world.surface(ray, hit);
             let opacity = self.materials[surface.material as usize].opacity;
             if opacity > 0.0 {
-                let seen = Seen { pixel, index, count, surface: &surface, hit };
+                let seen = Seen { pixel, index, shared_by, surface: &surface, hit };
                 let color = self.shaded(&seen, -ray.direction.normalize(), studio);
                 light += open * opacity * color;
                 open *= 1.0 - opacity;
@@ -186,7 +195,7 @@ impl Picture<'_> {
         let material = &self.materials[surface.material as usize];
         let base_color = material.base_color.unwrap_or(surface.color);
         let lights = || -> Vec<Arriving> {
-            let num_rays = SHADOW_RAYS.div_ceil(seen.count);
+            let num_rays = SHADOW_RAYS.div_ceil(seen.shared_by);
             let lights = (0..).zip(&self.lighting.lights);
             lights
                 .map(|(number, light)| {
@@ -199,7 +208,7 @@ impl Picture<'_> {
             Shade::Unlit => base_color,
             Shade::Toon(toon) => toon::shade(toon, base_color, surface.normal, to_viewer, &lights()),
             Shade::Basic(basic) => {
-                let num_directions = ENVIRONMENT_DIRECTIONS.div_ceil(seen.count);
+                let num_directions = ENVIRONMENT_DIRECTIONS.div_ceil(seen.shared_by);
                 let seed = seed(seen.pixel, seen.index, FOR_ENVIRONMENT);
                 let ambient = self.lighting.ambient.as_dvec3();
                 let radiance = basic.0.radiance(
@@ -217,7 +226,7 @@ impl Picture<'_> {
         };
         match &self.occlusion {
             Some(occlusion) => {
-                let num_rays = OCCLUSION_RAYS.div_ceil(seen.count);
+                let num_rays = OCCLUSION_RAYS.div_ceil(seen.shared_by);
                 let seed = seed(seen.pixel, seen.index, FOR_OCCLUSION);
                 let occluded = occluded(self.world, surface, seen.hit.object, occlusion.radius, num_rays, seed);
                 color * (1.0 - occlusion.intensity * occluded).max(0.0)
@@ -231,7 +240,8 @@ impl Picture<'_> {
 struct Seen<'a> {
     pixel: [u32; 2],
     index: u32,
-    count: u32,
+    /// How many samples share a pixel's rays.
+    shared_by: u32,
     surface: &'a Surface,
     hit: Hit,
 }

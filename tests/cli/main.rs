@@ -11,6 +11,7 @@ mod compare;
 mod extremes;
 mod info;
 mod pictures;
+mod reference;
 mod rig;
 mod schema;
 mod shipped;

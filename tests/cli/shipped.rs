@@ -1,6 +1,6 @@
 //! `restyle copy`, and what is refused where no driver answers.
 
-use super::rig::Folder;
+use super::rig::{Folder, Picture};
 use std::process::Stdio;
 
 #[test]
@@ -48,16 +48,23 @@ fn the_schema_in_place_of_a_style_is_told() {
 }
 
 #[test]
-fn without_an_adapter_the_message_names_the_package() {
+fn without_an_adapter_the_reference_renderer_draws_and_says_so() {
     let folder = Folder::new("none");
     let none = [("VK_DRIVER_FILES", "/nonexistent"), ("VK_ICD_FILENAMES", "/nonexistent")];
     let run = |args: &str| folder.start(args.split_whitespace(), &none, Stdio::null(), None);
-    run("gallery c60 -o sheet").refused(3, "mesa-vulkan-drivers");
-    let outcome = run("render c60 -o out.png").refused(3, "mesa-vulkan-drivers");
-    assert!(outcome.err.contains("no graphics adapter"), "{}", outcome.err);
-    // What is wrong with the input is said first, since it would be wrong anywhere.
-    run("render c60 -s nope.json -o out.png").refused(1, "nope.json");
-    assert!(folder.names().is_empty());
+    let told = "no graphics adapter was found: the reference renderer draws";
+    let outcome = run("render c60 -o out.png --size 24x24 --samples 4").done();
+    assert!(outcome.messages().iter().any(|line| line.starts_with(told)), "{}", outcome.err);
+    assert!(Picture::read(&folder, "out.png").num_colors() > 20);
+    let outcome = run("gallery water -s education -s scientific -o sheet --size 16x16").done();
+    assert!(outcome.messages().iter().any(|line| line.starts_with(told)), "{}", outcome.err);
+    assert!(folder.path("sheet/water.scientific.png").is_file() && folder.path("sheet/index.html").is_file());
+    // What asks for an adapter is told how to get one.
+    run("render c60 --renderer gpu -o no.png").refused(3, "mesa-vulkan-drivers");
+    run("render c60 --watch -o no.png").refused(3, "mesa-vulkan-drivers");
+    run("render c60 -s nope.json -o no.png").refused(1, "nope.json");
+    run("render c60 --aov depth=no.exr").refused(2, "--watch and --aov are of the adapter");
+    assert_eq!(folder.names(), ["out.png", "sheet"]);
 }
 
 #[test]

@@ -13,6 +13,7 @@ mod outline;
 mod outline_truth;
 mod outlines;
 mod output;
+mod reference;
 mod sampling;
 mod shadows;
 mod surface;

@@ -22,7 +22,7 @@ pub fn stl(facets: &[[DVec3; 3]]) -> String {
 }
 
 /// Both triangles of a quad, counter-clockwise.
-fn quad(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> [[DVec3; 3]; 2] {
+pub fn quad(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> [[DVec3; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }
 
