@@ -38,6 +38,9 @@ const SIDE_BOTH: u32 = 0u;
 const SIDE_FIRST: u32 = 1u;
 const SIDE_SECOND: u32 = 2u;
 
+// The place of an edge that lies somewhere between both pixels: the border of a triangle.
+const PLACE_UNKNOWN: u32 = 128u;
+
 // Farther than anything.
 const NOWHERE: f32 = 1e30;
 // Least step of depth in pixels: planes that are told apart by rounding alone make no edge.
@@ -325,11 +328,13 @@ struct Near {
     outermost: bool,
     // Scene units of a pixel at the edge.
     pixel: f32,
+    // Side of the square that the line's share is of: the sample's, or the pixel where the edge may be anywhere in it.
+    footprint: f32,
 }
 
-// Length of what a line from `low` to `high` and the square of a sample around `middle` have in common.
-fn overlap(low: f32, high: f32, middle: f32) -> f32 {
-    let half = 0.5 * view.footprint_px;
+// Length of what a line from `low` to `high` and a square around `middle` have in common.
+fn overlap(low: f32, high: f32, middle: f32, footprint: f32) -> f32 {
+    let half = 0.5 * footprint;
     return max(min(high, middle + half) - max(low, middle - half), 0.0);
 }
 
@@ -340,12 +345,12 @@ fn share_of(near: Near, width_px: f32, width_world: f32) -> f32 {
     if OUTLINE_WORLD_WIDTHS { width = min(width_px + width_world / near.pixel, outline_params.reach_px); }
     let fade_from = select(2.0 * clamp(width, 0.01, 2.0), 0.5, near.outermost);
     let fade = min(near.radius / fade_from, 1.0);
-    let footprint = view.footprint_px;
-    if near.side == SIDE_BOTH { return fade * overlap(-0.5 * width, 0.5 * width, near.distance) / footprint; }
+    let footprint = near.footprint;
+    if near.side == SIDE_BOTH { return fade * overlap(-0.5 * width, 0.5 * width, near.distance, footprint) / footprint; }
     // In front: only what the pixel has of beyond the edge. Behind: the line's share of what is not in front.
     let middle = select(near.distance, min(near.signed_distance, 0.0), near.in_front);
     let visible = select(min(near.distance + 0.5 * footprint, footprint), footprint, near.in_front);
-    return fade * overlap(0.0, width, middle) / visible;
+    return fade * overlap(0.0, width, middle, footprint) / visible;
 }
 
 // Adds what one seed covers of the pixel `own` at `depth`.
@@ -357,6 +362,8 @@ fn add_seed(before: Cover, seed: vec2<u32>, at: vec2<i32>, step: vec2<i32>, own:
     let from_edge = vec2<f32>(own - at) - place * vec2<f32>(step);
     var near: Near;
     near.side = (what >> 3u) & 3u;
+    let is_anywhere = near.side != SIDE_BOTH && ((what >> 5u) & 255u) == PLACE_UNKNOWN;
+    near.footprint = select(view.footprint_px, 1.0, is_anywhere);
     near.pixel = pixel_world(view, covers_beyond);
     near.signed_distance = dot(from_edge, across);
     let along = max(abs(dot(from_edge, vec2<f32>(-across.y, across.x))) - HALF_SEGMENT_PX, 0.0);
@@ -395,7 +402,7 @@ fn add_seed(before: Cover, seed: vec2<u32>, at: vec2<i32>, step: vec2<i32>, own:
     }
     // The pixel right behind an edge shows what is in front where the edge runs through it.
     let shows = most > 0.0 && near.side != SIDE_BOTH && !near.in_front && (first || second);
-    let behind = select(1.0, min(near.distance / view.footprint_px + 0.5, 1.0), shows);
+    let behind = select(1.0, min(near.distance / near.footprint + 0.5, 1.0), shows);
     cover.front = select(cover.front, select(at + step, at, near.side == SIDE_FIRST), behind < cover.behind);
     cover.behind = min(cover.behind, behind);
     return cover;

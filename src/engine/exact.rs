@@ -5,9 +5,11 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3, Vec3};
 
-use super::{Content, Request, Resolved, resolve};
+use super::{Content, Request, Resolved, effects, resolve};
 use crate::config::{Length, Style, Value, Values};
+use crate::effects::EFFECTS;
 use crate::effects::focus::FOCUS;
+use crate::effects::outline::OutlineParams;
 use crate::frame::objects::DrawList;
 use crate::frame::{MAX_LIGHTS, Materials};
 use crate::reference::{
@@ -114,6 +116,11 @@ impl Exact {
             };
             lens(values, &optics, &camera, content, &|length| lengths.world(length), &px)
         });
+        let lines: Vec<OutlineParams> = effects(&content.style, lengths, &camera, request.size[1])
+            .into_iter()
+            .filter(|effect| EFFECTS[effect.effect].name() == "outlinePost")
+            .map(|effect| bytemuck::pod_read_unaligned(&effect.params))
+            .collect();
         let picture = Picture {
             world: &world,
             materials: &materials,
@@ -121,6 +128,7 @@ impl Exact {
             lighting: &lighting,
             occlusion,
             lens,
+            lines: &lines,
             background: content.camera.background(request.transparent),
         };
         let settings =

@@ -12,6 +12,7 @@ mod basic;
 mod hull;
 mod lens;
 mod light;
+mod lines;
 mod occlusion;
 mod primitive;
 mod render;

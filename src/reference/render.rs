@@ -7,10 +7,13 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use glam::{DVec2, DVec3};
 
 use super::light::{Arriving, arriving};
+use super::lines::{self, Grid, Place};
 use super::occlusion::occluded;
+use super::primitive::Ray;
 use super::sampling::{seed, spread, square_point};
 use super::world::{Hit, Surface, World};
 use super::{Lens, Material, Occlusion, Optics, Shade, toon};
+use crate::effects::outline::OutlineParams;
 use crate::scene::Lighting;
 use crate::shading::environment::Studio;
 
@@ -46,6 +49,8 @@ pub struct Picture<'a> {
     pub occlusion: Option<Occlusion>,
     /// What is out of focus.
     pub lens: Option<Lens>,
+    /// Lines over the picture, the lower ones first.
+    pub lines: &'a [OutlineParams],
     /// Premultiplied linear background.
     pub background: [f32; 4],
 }
@@ -97,10 +102,8 @@ pub fn render<E: From<BrokenOff>>(
                 }
                 let left = column * TILE_PX;
                 let tile_width = TILE_PX.min(width - left);
-                let pixel = |index: u32| {
-                    picture.pixel([left + index % tile_width, top + index / tile_width], side, settings.draft, &studio)
-                };
-                let tile: Vec<[f32; 4]> = (0..tile_width * rows).map(pixel).collect();
+                let tile = Tile { origin: [left, top], size: [tile_width, rows] };
+                let tile = picture.tile(&tile, side, settings.draft, &studio);
                 let Ok(mut band) = band.lock() else { break };
                 for (row, values) in tile.chunks_exact(tile_width as usize).enumerate() {
                     let start = row * width as usize + left as usize;
@@ -123,7 +126,101 @@ pub fn render<E: From<BrokenOff>>(
     Ok(())
 }
 
+/// A rectangle of the picture.
+struct Tile {
+    origin: [u32; 2],
+    size: [u32; 2],
+}
+
+impl Tile {
+    fn pixels(&self) -> impl Iterator<Item = [u32; 2]> {
+        let ([left, top], [width, height]) = (self.origin, self.size);
+        (0..height).flat_map(move |y| (0..width).map(move |x| [left + x, top + y]))
+    }
+}
+
 impl Picture<'_> {
+    /// The pixels of a tile over the background: premultiplied linear light.
+    fn tile(&self, tile: &Tile, side: u32, draft: bool, studio: &Studio) -> Vec<[f32; 4]> {
+        if self.lines.is_empty() {
+            tile.pixels().map(|pixel| self.pixel(pixel, side, draft, studio)).collect()
+        } else {
+            self.lined_tile(tile, side, draft, studio)
+        }
+    }
+
+    /// The same with lines: samples lie on a grid, in which the lines are found.
+    fn lined_tile(&self, tile: &Tile, side: u32, draft: bool, studio: &Studio) -> Vec<[f32; 4]> {
+        // At least three places to each side of a pixel: lines are found between them.
+        let side = side.max(3);
+        let shared_by = if draft { (side * side).max(WHOLE_SAMPLES) } else { side * side };
+        let reach = self.lines.iter().map(|lines| lines::reach_px(lines, self.optics.pixel(self.optics.near)));
+        // A pixel beyond lines, since folds are looked for within one.
+        let margin = reach.fold(0.0, f64::max).ceil() as usize + 1;
+        let (cells, edge) = (side as usize, margin * side as usize);
+        let [inner_width, inner_height] = tile.size.map(|length| length as usize * cells);
+        let mut grid = Grid {
+            optics: &self.optics,
+            origin_px: DVec2::new(f64::from(tile.origin[0]), f64::from(tile.origin[1])) - margin as f64,
+            side,
+            size: [inner_width + 2 * edge, inner_height + 2 * edge],
+            places: Vec::new(),
+        };
+        let [width, height] = grid.size;
+        grid.places = (0..width * height).map(|index| self.seen(grid.ray([index % width, index / width]))).collect();
+        let covered: Vec<Vec<[f64; 3]>> = self.lines.iter().map(|lines| grid.covered(lines)).collect();
+        let pixel = |[x, y]: [u32; 2]| {
+            let corner = [(x - tile.origin[0]) as usize * cells + edge, (y - tile.origin[1]) as usize * cells + edge];
+            let (mut light, mut alpha) = (DVec3::ZERO, 0.0);
+            for index in 0..side * side {
+                let cell = [index % side, index / side];
+                let at = [corner[0] + cell[0] as usize, corner[1] + cell[1] as usize];
+                let place = DVec2::new(f64::from(x), f64::from(y))
+                    + (DVec2::new(f64::from(cell[0]), f64::from(cell[1])) + 0.5) / f64::from(side);
+                let (mut color, mut share) = self.sample([x, y], index, shared_by, place, studio);
+                for (lines, covered) in self.lines.iter().zip(&covered) {
+                    let colors = [lines.crease_color, lines.boundary_color, lines.silhouette_color];
+                    for ([r, g, b, opacity], covered) in colors.into_iter().zip(covered[at[1] * width + at[0]]) {
+                        let line = covered * f64::from(opacity);
+                        color = color.lerp(DVec3::new(f64::from(r), f64::from(g), f64::from(b)), line);
+                        share += line * (1.0 - share);
+                    }
+                }
+                light += color;
+                alpha += share;
+            }
+            self.over(light, alpha, side * side)
+        };
+        tile.pixels().map(pixel).collect()
+    }
+
+    /// What a line of sight sees first, for lines; a hull outline is one already.
+    fn seen(&self, ray: Ray) -> Option<Place> {
+        let near = self.optics.near;
+        let mut last = None;
+        let hit = loop {
+            let Some(hit) = self.world.next(ray, near, last) else { break None };
+            let surface = self.world.surface(ray, hit);
+            if self.materials[surface.material as usize].opacity > 0.0 {
+                break Some((hit, surface));
+            }
+            last = Some(hit);
+        };
+        let end = hit.map_or(f64::INFINITY, |(hit, _)| hit.t);
+        if let Some(outline) = self.world.first_outline(ray, near, near, end, &[]) {
+            return Some(Place { depth: outline.depth, normal: DVec3::Z, facet: DVec3::Z, bend: 0.0, group: 0, id: 0 });
+        }
+        let (hit, surface) = hit?;
+        Some(Place {
+            depth: hit.t,
+            normal: surface.normal,
+            facet: surface.facet,
+            bend: surface.bend,
+            group: surface.group,
+            id: surface.id,
+        })
+    }
+
     /// The mean of a pixel's samples over the background: premultiplied linear light.
     fn pixel(&self, pixel: [u32; 2], side: u32, draft: bool, studio: &Studio) -> [f32; 4] {
         let count = side * side;
@@ -139,6 +236,11 @@ impl Picture<'_> {
             light += color;
             alpha += covered;
         }
+        self.over(light, alpha, count)
+    }
+
+    /// The mean of samples over the background.
+    fn over(&self, light: DVec3, alpha: f64, count: u32) -> [f32; 4] {
         let [r, g, b, a] = self.background.map(f64::from);
         let share = 1.0 / f64::from(count);
         let (light, alpha) = (light * share, alpha * share);

@@ -224,7 +224,8 @@ fn add_seed(view: &View, params: &Params, cover: &mut Cover, seed: &Seed, from: 
     let slack = if seed.side == Side::Both { (2.0 * distance + 2.0) * pixel_world(view, seed.depth) } else { 0.0 };
     let beyond = seed.side == Side::Both || first || second || signed > -BEYOND_SLACK_PX;
     let covered = in_front || beyond && depth > seed.depth - slack;
-    let footprint = params.footprint_px;
+    let is_anywhere = seed.side != Side::Both && (seed.place * 255.0).round() == 128.0;
+    let footprint = if is_anywhere { 1.0 } else { params.footprint_px };
     let mut most = 0.0f64;
     for (kind, line) in cover.lines.iter_mut().enumerate() {
         let width = params.width_px[kind];
