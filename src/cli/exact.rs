@@ -24,8 +24,7 @@ pub(super) fn run_instead(args: &Args, options: &LoadOptions) -> Result<(), Fail
     if args.is_watched() {
         return Err(crate::engine::GpuError::NoAdapter.into());
     }
-    tell(instead());
-    run(args, options)
+    draw(args, options, true)
 }
 
 /// The line that says what draws where there is no adapter.
@@ -35,6 +34,10 @@ pub(super) fn instead() -> &'static str {
 
 /// Draws what the command line asks for.
 pub(super) fn run(args: &Args, options: &LoadOptions) -> Result<(), Failure> {
+    draw(args, options, false)
+}
+
+fn draw(args: &Args, options: &LoadOptions, is_instead: bool) -> Result<(), Failure> {
     if args.is_watched() || args.has_aovs() {
         return Err(Failure::usage("--watch and --aov are of the adapter: give them without --renderer reference"));
     }
@@ -43,6 +46,9 @@ pub(super) fn run(args: &Args, options: &LoadOptions) -> Result<(), Failure> {
     keep_warnings(&mut style);
     let loaded = inputs::load_scenes(args.scenes(), options)?;
     inputs::check_outputs(args.outputs(), &files_read(&style, &loaded.scene))?;
+    if is_instead {
+        tell(instead());
+    }
     inputs::print_warnings(&style, &loaded.scene, args.scenes());
     let atoms = loaded.scene.molecule.atoms.len();
     let triangles = loaded.scene.assembly.num_triangles();

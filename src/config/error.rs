@@ -343,7 +343,7 @@ pub enum Notice {
         instead: &'static str,
     },
     /// A post effect of the contract that this version does not draw.
-    #[error("post effect {} is not drawn by this version yet: it is left out", quote(.name))]
+    #[error("post effect {} is drawn by the reference renderer alone so far (--renderer reference): it is left out", quote(.name))]
     EffectNotDrawn {
         /// The effect.
         name: String,

@@ -112,6 +112,15 @@ impl<'a> Reader<'a> {
 
     /// Reads one parameter of a table.
     pub(super) fn set(&mut self, values: &mut Values, index: usize, node: &Node) {
+        self.set_of_undrawn(values, index, node);
+        let param = &values.params()[index];
+        if !param.drawn {
+            self.warn(self.texts.place(node.span), Notice::PropertyNotDrawn { name: param.name.to_owned() });
+        }
+    }
+
+    /// The same of what is told not to be drawn already.
+    pub(super) fn set_of_undrawn(&mut self, values: &mut Values, index: usize, node: &Node) {
         let param = &values.params()[index];
         match read(param, node, !self.mistakes.is_full()) {
             Ok(value) => {
@@ -121,9 +130,6 @@ impl<'a> Reader<'a> {
                 values.set(index, value, self.texts.place(node.span));
             }
             Err((span, problem)) => self.wrong(span, problem),
-        }
-        if !param.drawn {
-            self.warn(self.texts.place(node.span), Notice::PropertyNotDrawn { name: param.name.to_owned() });
         }
     }
 

@@ -154,7 +154,10 @@ impl<'a> Shaders<'a> {
         let is_known = |member: &&Member| entry.role == Role::PostEffect || SHARED.contains(&member.key.as_str());
         for member in properties.iter().filter(is_known) {
             if let Some(index) = used.values.params().iter().position(|param| param.name == member.key) {
-                reader.set(&mut used.values, index, &member.value);
+                match entry.role {
+                    Role::Object => reader.set(&mut used.values, index, &member.value),
+                    Role::PostEffect => reader.set_of_undrawn(&mut used.values, index, &member.value),
+                }
             }
         }
         used

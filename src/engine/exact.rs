@@ -276,3 +276,27 @@ fn srgb_from_linear(light: f64) -> f64 {
     let c = light.clamp(0.0, 1.0);
     if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::catalog;
+
+    #[test]
+    fn the_reference_knows_every_shader_and_effect() {
+        // A new one needs its exact form in `shades` or `light_rows`.
+        assert_eq!(SHADERS.iter().map(|shader| shader.name()).collect::<Vec<_>>(), ["basic", "toon", "unlit"]);
+        assert_eq!(EFFECTS.iter().map(|effect| effect.name()).collect::<Vec<_>>(), ["outlinePost"]);
+        let catalog = catalog();
+        let known = |name: &str| catalog.iter().any(|entry| entry.name == name && !entry.params.is_empty());
+        assert!(DRAWN_EFFECTS.iter().all(|name| known(name)));
+    }
+
+    #[test]
+    fn light_is_encoded_as_srgb() {
+        let rows = [[1.0, 0.0, 0.214_041_14, 1.0], [0.25, 0.0, 0.0, 0.5], [0.0; 4]];
+        assert_eq!(encoded(&rows, false), [255, 0, 128, 255, 188, 0, 0, 128, 0, 0, 0, 0]);
+        let wide = encoded(&rows[..1], true);
+        assert_eq!(bytemuck::pod_read_unaligned::<[u16; 4]>(&wide), [65535, 0, 32768, 65535]);
+    }
+}

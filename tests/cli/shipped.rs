@@ -61,10 +61,11 @@ fn without_an_adapter_the_reference_renderer_draws_and_says_so() {
     assert!(folder.path("sheet/water.scientific.png").is_file() && folder.path("sheet/index.html").is_file());
     // What asks for an adapter is told how to get one.
     run("render c60 --renderer gpu -o no.png").refused(3, "mesa-vulkan-drivers");
-    run("render c60 --watch -o no.png").refused(3, "mesa-vulkan-drivers");
+    folder.write("mine.json", "{}");
+    run("render c60 -s mine.json --watch -o no.png").refused(3, "mesa-vulkan-drivers");
     run("render c60 -s nope.json -o no.png").refused(1, "nope.json");
     run("render c60 --aov depth=no.exr").refused(2, "--watch and --aov are of the adapter");
-    assert_eq!(folder.names(), ["out.png", "sheet"]);
+    assert_eq!(folder.names(), ["mine.json", "out.png", "sheet"]);
 }
 
 #[test]

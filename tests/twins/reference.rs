@@ -50,6 +50,7 @@ fn drawn(
         lighting: &lighting,
         occlusion,
         lens: None,
+        lines: &[],
         background: [0.0; 4],
     };
     let settings = Settings { size, samples, draft: false, threads: 2 };

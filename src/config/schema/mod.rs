@@ -163,7 +163,7 @@ fn for_shader(entry: &CatalogEntry) -> Value {
     })
 }
 
-/// What `properties` of a shader may hold. Of one that is not drawn, only what its stand-in shares with it is known.
+/// What `properties` of a shader may hold. Of one that is not drawn, only what is known already, or its stand-in shares.
 fn properties_of(catalog: &Catalog<'_>, entry: &CatalogEntry) -> Value {
     if entry.drawn {
         let mut schema = table(entry.params);
@@ -171,6 +171,7 @@ fn properties_of(catalog: &Catalog<'_>, entry: &CatalogEntry) -> Value {
         return schema;
     }
     let shared = catalog.basic().params.iter().filter(|p| entry.role == Role::Object && SHARED.contains(&p.name));
-    let properties: Map<String, Value> = shared.map(|p| (p.name.to_owned(), param::param(p))).collect();
+    let own = entry.params.iter();
+    let properties: Map<String, Value> = shared.chain(own).map(|p| (p.name.to_owned(), param::param(p))).collect();
     json!({ "type": "object", "properties": properties })
 }

@@ -43,7 +43,7 @@ fn what_nothing_names_is_unused() {
         [
             r#"s.json:1:25 (shaders[0].name): warning: shader "a" draws nothing: name it in mapping, or remove it"#,
             r#"s.json:2:19 (shaders[2].name): warning: post effect "ao" does nothing: list it in mapping.post_effects, or remove it"#,
-            r#"s.json:2:35 (shaders[2].shader): warning: post effect "ssaoPost" is not drawn by this version yet: it is left out"#,
+            r#"s.json:2:35 (shaders[2].shader): warning: post effect "ssaoPost" is drawn by the reference renderer alone so far (--renderer reference): it is left out"#,
         ]
     );
 }
