@@ -55,11 +55,11 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             "--size {width}x{height}: pictures are at most {MOST_SIDE}x{MOST_SIDE} here"
         )));
     }
+    let needs_gpu = experiments.iter().any(|experiment| experiment.needs_gpu());
+    let gpu = if needs_gpu { Some(Arc::new(Gpu::open()?)) } else { None };
     for experiment in &experiments {
         check_folder(&args.output.join(experiment.name()))?;
     }
-    let needs_gpu = experiments.iter().any(|experiment| experiment.needs_gpu());
-    let gpu = if needs_gpu { Some(Arc::new(Gpu::open()?)) } else { None };
     let setup = Setup { gpu, size: args.size.map(|size| size.0), thorough: args.thorough };
     let stop = stopped_by_interrupt();
     let go_on = || if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };

@@ -145,13 +145,13 @@ pub fn best_and_worst(report: &Report) -> String {
         ChartKind::CostAgainstError { error, .. } => row.error.as_ref().map(|metrics| error.of(metrics)),
         ChartKind::TimeByExtent { .. } => Some(row.median_ms()).filter(|ms| ms.is_finite()),
     };
-    let unit = match report.chart {
-        ChartKind::CostAgainstError { error, .. } => error.short_name(),
-        ChartKind::TimeByExtent { .. } => "ms",
+    let (unit, nothing) = match report.chart {
+        ChartKind::CostAgainstError { error, .. } => (error.short_name(), "nothing was held against the truth"),
+        ChartKind::TimeByExtent { .. } => ("ms", "nothing was measured"),
     };
     let mut rows: Vec<(f64, &Row)> = report.rows.iter().filter_map(|row| Some((value(row)?, row))).collect();
     rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let (Some(best), Some(worst)) = (rows.first(), rows.last()) else { return "nothing was measured".to_owned() };
+    let (Some(best), Some(worst)) = (rows.first(), rows.last()) else { return nothing.to_owned() };
     let said = |(value, row): &(f64, &Row)| format!("{unit} {} ({})", short(*value), called(row));
     format!("best {}, worst {}", said(best), said(worst))
 }
