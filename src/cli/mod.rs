@@ -8,6 +8,7 @@ mod gallery;
 mod info;
 mod inputs;
 mod manual;
+mod measure;
 mod messages;
 mod render;
 mod schema;
@@ -43,6 +44,8 @@ enum Command {
     Info(info::Args),
     /// Say how far two pictures are from each other, and where
     Compare(compare::Args),
+    /// Chart what methods cost against how far they are from the truth
+    Measure(measure::Args),
     /// Copy a shipped look to a file, to start from
     Copy(copy::Args),
     /// Print the JSON Schema of style files, for editors
@@ -115,6 +118,7 @@ pub fn run() -> ExitCode {
         Command::Check(args) => check::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::Measure(args) => measure::run(&args),
         Command::Copy(args) => copy::run(&args),
         Command::Schema(args) => schema::run(&args),
     };

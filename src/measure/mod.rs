@@ -1,3 +1,20 @@
-//! Measurements: how far pictures are from each other.
+//! Measurements: how far pictures are from each other, and experiments that chart what methods cost against how wrong they
+//! are.
+//!
+//! ```text
+//! experiments/*  ->  cases  ->  run: rounds, truths, metrics  ->  report  ->  chart, page
+//! ```
 
+pub mod chart;
+mod date;
+pub mod experiment;
+pub mod experiments;
+mod front;
 pub mod metrics;
+pub mod page;
+pub mod run;
+mod stage;
+
+pub use experiment::{Case, ChartKind, Experiment, MeasureError, Setup};
+pub use experiments::{EXPERIMENTS, find};
+pub use run::{Report, Row, run};

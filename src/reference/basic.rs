@@ -12,7 +12,7 @@ use crate::shading::basic::BasicMaterial;
 use crate::shading::brdf_table::{N_DOT_V_MIN, ROUGHNESS_MIN, albedos};
 use crate::shading::environment::Studio;
 
-/// Reflectance at normal incidence of index 1.5, the usual dielectric [Filament].
+/// Reflectance at normal incidence of index 1.5, the usual dielectric [Filament, base colour remapping].
 const F0_DIELECTRIC: f64 = 0.04;
 /// Albedos of one roughness: at n.v = (x / last)^2.
 const NUM_ALBEDOS: usize = 257;
@@ -174,7 +174,7 @@ fn smith(alpha2: f64, cosine: f64) -> f64 {
     (cosine * cosine * (1.0 - alpha2) + alpha2).sqrt()
 }
 
-/// [Schlick1994]
+/// Schlick's Fresnel term [Schlick1994, eq. 15].
 fn fresnel(f0: DVec3, l_dot_h: f64) -> DVec3 {
     f0 + (DVec3::ONE - f0) * (1.0 - l_dot_h).powi(5)
 }

@@ -25,7 +25,7 @@ pub fn square_point(seed: u64) -> DVec2 {
 }
 
 /// Point `index` of `count` points that cover the unit square evenly, moved by the seed's own shift: the sequence of the
-/// plastic number's powers [Roberts2018].
+/// plastic number's powers [Roberts2018, throughout].
 pub fn spread(index: u32, seed: u64) -> DVec2 {
     const STEP: DVec2 = DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_2);
     (square_point(seed) + f64::from(index) * STEP).fract()

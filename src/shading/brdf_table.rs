@@ -49,7 +49,7 @@ pub fn compute_with(num_samples: u32) -> Vec<[f32; 4]> {
     table
 }
 
-/// A, B and D of one n.v and perceptual roughness by this many samples: at [`NUM_SAMPLES`] what the table holds.
+/// A, B and D of one n.v and perceptual roughness by this many samples: at 2048 what the table holds.
 pub fn albedos(n_dot_v: f64, roughness: f64, num_samples: u32) -> [f64; 3] {
     let [a, b] = specular_albedo(n_dot_v, roughness, num_samples);
     [a, b, diffuse_albedo(n_dot_v, roughness, num_samples)]

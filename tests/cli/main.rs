@@ -10,6 +10,7 @@ mod check;
 mod compare;
 mod extremes;
 mod info;
+mod measure;
 mod pictures;
 mod reference;
 mod rig;

@@ -1,0 +1,203 @@
+//! What an experiment is: cases that are timed in turn, and pictures that are held against a truth.
+
+use std::cell::OnceCell;
+use std::ops::ControlFlow;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use serde_json::{Map, Value as Json};
+
+use super::metrics::Metrics;
+use super::run::Row;
+use crate::engine::{Gpu, GpuError};
+use crate::scene::Image;
+
+/// What an experiment runs on, and how far it goes.
+#[derive(Clone)]
+pub struct Setup {
+    /// The device; none for an experiment that needs none.
+    pub gpu: Option<Arc<Gpu>>,
+    /// Width and height of pictures in pixels, unless each experiment takes its own.
+    pub size: Option<[u32; 2]>,
+    /// As many cases, samples and rounds as are worth having, however long they take.
+    pub thorough: bool,
+}
+
+/// Why an experiment came to nothing.
+#[derive(Debug, thiserror::Error)]
+pub enum MeasureError {
+    /// The device.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// A scene or a style of the experiment cannot be read.
+    #[error("{0}")]
+    Content(String),
+    /// The user broke it off.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// Asked again and again whether to go on.
+pub type GoOn<'a> = &'a dyn Fn() -> ControlFlow<()>;
+
+/// What is measured: it can be timed, and seen.
+pub trait Subject {
+    /// Draws one frame; returns its milliseconds by the wall clock.
+    ///
+    /// # Errors
+    /// [`MeasureError`] where it cannot be drawn.
+    fn frame_ms(&mut self) -> Result<f64, MeasureError>;
+
+    /// Milliseconds of each pass of a frame, where the device has timestamps.
+    ///
+    /// # Errors
+    /// As [`Subject::frame_ms`].
+    fn pass_ms(&mut self) -> Result<Vec<(&'static str, f64)>, MeasureError> {
+        Ok(Vec::new())
+    }
+
+    /// Bytes of the targets of the last frame.
+    fn bytes(&self) -> u64 {
+        0
+    }
+
+    /// The picture that is held against the truth.
+    ///
+    /// # Errors
+    /// As [`Subject::frame_ms`].
+    fn picture(&mut self) -> Result<Image, MeasureError>;
+}
+
+/// Makes the picture of a truth.
+type Make = Box<dyn Fn(GoOn<'_>) -> Result<Image, MeasureError>>;
+
+/// The right picture, made when the first case asks for it.
+pub struct Truth {
+    make: Make,
+    image: OnceCell<Rc<Image>>,
+}
+
+impl Truth {
+    /// A truth that `make` draws; it asks whether to go on.
+    pub fn new(make: impl Fn(GoOn<'_>) -> Result<Image, MeasureError> + 'static) -> Rc<Truth> {
+        Rc::new(Truth { make: Box::new(make), image: OnceCell::new() })
+    }
+
+    /// Its picture.
+    ///
+    /// # Errors
+    /// [`MeasureError::Interrupted`], and whatever drawing says.
+    pub fn image(&self, go_on: GoOn<'_>) -> Result<Rc<Image>, MeasureError> {
+        if let Some(image) = self.image.get() {
+            return Ok(Rc::clone(image));
+        }
+        let image = Rc::new((self.make)(go_on)?);
+        Ok(Rc::clone(self.image.get_or_init(|| image)))
+    }
+}
+
+/// One row of an experiment: a method with its settings on a scene.
+pub struct Case {
+    /// What is drawn.
+    pub scene: String,
+    /// What draws it.
+    pub method: String,
+    /// With which settings.
+    pub settings: Map<String, Json>,
+    /// The colour of its points: cases of one series share it and are joined by a line.
+    pub series: String,
+    /// Cases of one series and one point are averaged over scenes in the chart of cost and error.
+    pub point: String,
+    /// How large the scene is, for charts of time by size.
+    pub extent: f64,
+    /// Whether the method was published as it is here.
+    pub is_published: bool,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// What is measured.
+    pub subject: Box<dyn Subject>,
+    /// What it should look like; none where only time counts.
+    pub truth: Option<Rc<Truth>>,
+}
+
+/// Which error a chart shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ErrorKind {
+    /// Mean FLIP.
+    Flip,
+    /// Root mean square of display values.
+    Rmse,
+}
+
+impl ErrorKind {
+    /// Its value.
+    pub fn of(self, metrics: &Metrics) -> f64 {
+        match self {
+            ErrorKind::Flip => metrics.flip,
+            ErrorKind::Rmse => metrics.display.rmse.all,
+        }
+    }
+
+    /// What an axis says.
+    pub fn title(self) -> &'static str {
+        match self {
+            ErrorKind::Flip => "error: mean FLIP, 0 to 1",
+            ErrorKind::Rmse => "error: RMSE of display values, 0 to 1",
+        }
+    }
+
+    /// What a figure is called.
+    pub fn short_name(self) -> &'static str {
+        match self {
+            ErrorKind::Flip => "FLIP",
+            ErrorKind::Rmse => "RMSE",
+        }
+    }
+
+    /// The smallest error that a chart tells from none: less than eight bits a channel show.
+    pub fn floor(self) -> f64 {
+        1e-4
+    }
+}
+
+/// What the chart of an experiment has on its axes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ChartKind {
+    /// Cost against error, a front through the best.
+    CostAgainstError {
+        /// On the vertical axis.
+        error: ErrorKind,
+        /// Cost in ns a pixel instead of ms a frame.
+        per_pixel: bool,
+    },
+    /// Milliseconds by the extent of a scene.
+    TimeByExtent {
+        /// What the extent counts.
+        extent: &'static str,
+    },
+}
+
+/// One experiment: a file in `experiments/`, and a line in [`super::EXPERIMENTS`].
+pub trait Experiment: Sync {
+    /// Its name on the command line.
+    fn name(&self) -> &'static str;
+    /// What it finds out, in one sentence.
+    fn doc(&self) -> &'static str;
+    /// What its chart shows.
+    fn chart(&self) -> ChartKind;
+    /// Whether anything of it is drawn by the device.
+    fn needs_gpu(&self) -> bool {
+        true
+    }
+    /// How its numbers come about: truth, samples, what is left out. One paragraph each.
+    fn conditions(&self, setup: &Setup) -> Vec<String>;
+    /// What its rows come to, one sentence each, beyond what chart and table show.
+    fn findings(&self, _rows: &[Row]) -> Vec<String> {
+        Vec::new()
+    }
+    /// Its cases, scene by scene.
+    ///
+    /// # Errors
+    /// [`MeasureError::Content`] where a scene or a style cannot be read.
+    fn cases(&self, setup: &Setup) -> Result<Vec<Case>, MeasureError>;
+}

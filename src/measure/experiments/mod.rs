@@ -1,0 +1,17 @@
+//! The experiments: one file each, and one line in [`EXPERIMENTS`].
+
+mod geometry;
+mod looks;
+mod shading;
+mod toon_edges;
+
+use super::experiment::Experiment;
+
+/// All of them, in the order in which they are run.
+pub const EXPERIMENTS: &[&dyn Experiment] =
+    &[&shading::Shading, &looks::Looks, &toon_edges::ToonEdges, &geometry::Geometry];
+
+/// The experiment of this name.
+pub fn find(name: &str) -> Option<&'static dyn Experiment> {
+    EXPERIMENTS.iter().copied().find(|experiment| experiment.name() == name)
+}

@@ -1,0 +1,125 @@
+//! Scenes and styles of experiments, drawn by the device and by the reference renderer.
+
+use std::cell::RefCell;
+use std::ops::ControlFlow;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use super::experiment::{MeasureError, Subject, Truth};
+use crate::config::{self, Catalog, Source, Style};
+use crate::engine::exact::Exact;
+use crate::engine::{self, Engine, Gpu, GpuError, Request};
+use crate::scene::{Image, Scene};
+use crate::shipped::{self, SCENES, Shipped};
+
+/// A shipped molecule or mesh.
+pub fn shipped_scene(name: &str) -> Result<Scene, MeasureError> {
+    let file = SCENES.iter().find_map(|among| shipped::find(among, name));
+    let file = file.ok_or_else(|| MeasureError::Content(format!("{name}: is not shipped")))?;
+    scene(file.file, file.bytes)
+}
+
+/// A scene of a file in memory.
+pub fn scene(file: &str, bytes: &[u8]) -> Result<Scene, MeasureError> {
+    Scene::from_bytes(file, bytes).map_err(|error| MeasureError::Content(error.to_string()))
+}
+
+/// A shipped look.
+pub fn look(look: &Shipped) -> Result<Style, MeasureError> {
+    style(look.file, look.bytes)
+}
+
+/// A style of a file in memory.
+pub fn style(file: &str, bytes: &[u8]) -> Result<Style, MeasureError> {
+    let entries = engine::catalog();
+    let catalog = Catalog { shaders: &entries, kinds: engine::DRAWN_KINDS };
+    config::load(&Source::new(file, bytes), &catalog).map_err(|mistakes| MeasureError::Content(mistakes.to_string()))
+}
+
+/// The same style without post effects.
+pub fn without_effects(mut style: Style) -> Style {
+    style.post_effects.clear();
+    style.listed_effects.clear();
+    style
+}
+
+/// What of a stage its engine shows.
+type Shown = (Rc<str>, Request);
+
+/// A scene on the device, which cases show in styles and sizes of theirs.
+pub struct Stage {
+    engine: RefCell<Option<Engine>>,
+    shown: RefCell<Option<Shown>>,
+    gpu: Arc<Gpu>,
+    scene: Scene,
+}
+
+impl Stage {
+    /// A stage with a scene; nothing is built before it is shown.
+    pub fn new(gpu: &Arc<Gpu>, scene: Scene) -> Rc<Stage> {
+        Rc::new(Stage { engine: RefCell::new(None), shown: RefCell::new(None), gpu: Arc::clone(gpu), scene })
+    }
+}
+
+/// The device of a setup.
+pub fn device(gpu: Option<&Arc<Gpu>>) -> Result<&Arc<Gpu>, MeasureError> {
+    gpu.ok_or(MeasureError::Gpu(GpuError::NoAdapter))
+}
+
+/// A stage in one style, for one request.
+pub struct GpuFrame {
+    /// The scene.
+    pub stage: Rc<Stage>,
+    /// What the style is called.
+    pub style_name: Rc<str>,
+    /// The style.
+    pub style: Rc<Style>,
+    /// The size and the samples.
+    pub request: Request,
+}
+
+impl GpuFrame {
+    /// Draws a frame with all that it needs built already.
+    fn warm<T>(&self, draw: impl FnOnce(&mut Engine) -> Result<T, GpuError>) -> Result<T, MeasureError> {
+        let mut engine = self.stage.engine.borrow_mut();
+        let mut shown = self.stage.shown.borrow_mut();
+        let style = || Style::clone(&self.style);
+        let engine =
+            engine.get_or_insert_with(|| Engine::new(Arc::clone(&self.stage.gpu), self.stage.scene.clone(), style()));
+        let wanted = (Rc::clone(&self.style_name), self.request);
+        if shown.as_ref() != Some(&wanted) {
+            engine.set_style(style());
+            engine.draw(&self.request, false, &mut |_| ControlFlow::Continue(()))?;
+            *shown = Some(wanted);
+        }
+        Ok(draw(engine)?)
+    }
+}
+
+impl Subject for GpuFrame {
+    fn frame_ms(&mut self) -> Result<f64, MeasureError> {
+        self.warm(|engine| engine.draw(&self.request, false, &mut |_| ControlFlow::Continue(())))
+    }
+
+    fn pass_ms(&mut self) -> Result<Vec<(&'static str, f64)>, MeasureError> {
+        self.warm(|engine| {
+            engine.draw(&self.request, true, &mut |_| ControlFlow::Continue(()))?;
+            Ok(engine.pass_times().clone())
+        })
+    }
+
+    fn bytes(&self) -> u64 {
+        let engine = self.stage.engine.borrow();
+        engine.as_ref().map_or(0, |engine| engine.target_bytes().iter().map(|(_, bytes)| bytes).sum())
+    }
+
+    fn picture(&mut self) -> Result<Image, MeasureError> {
+        self.warm(|engine| engine.still(&self.request))
+    }
+}
+
+/// The truth of a scene in a style: exact ray casts.
+pub fn exact(scene: Scene, style: Style, request: Request) -> Rc<Truth> {
+    let exact = Exact::new(scene, style, None);
+    Truth::new(move |go_on| exact.still(&request, &mut |_| go_on()).map_err(|_| MeasureError::Interrupted))
+}
