@@ -2,14 +2,15 @@
 
 use std::io;
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressStyle;
 
-use super::render::{Args, cannot_write, files_read};
+use super::inputs::Loaded;
+use super::render::{Args, cannot_write, files_read, progress_bar, rounded};
 use super::{Failure, answer, inputs, tell};
 use crate::config::{Notice, Style};
 use crate::engine::Request;
@@ -20,11 +21,10 @@ use crate::scene::{LoadOptions, RowsHeader, write_png_rows};
 const SAMPLES: u32 = 64;
 
 /// Draws where there is no adapter, and says so.
-pub(super) fn run_instead(args: &Args, options: &LoadOptions) -> Result<(), Failure> {
-    if args.is_watched() {
-        return Err(crate::engine::GpuError::NoAdapter.into());
-    }
-    draw(args, options, true)
+pub(super) fn run_instead(args: &Args, style: Style, loaded: Loaded) -> Result<(), Failure> {
+    check(args)?;
+    tell(instead());
+    draw(args, style, loaded)
 }
 
 /// The line that says what draws where there is no adapter.
@@ -34,36 +34,46 @@ pub(super) fn instead() -> &'static str {
 
 /// Draws what the command line asks for.
 pub(super) fn run(args: &Args, options: &LoadOptions) -> Result<(), Failure> {
-    draw(args, options, false)
+    check(args)?;
+    let style = inputs::load_style(args.style())?;
+    let loaded = inputs::load_scenes(args.scenes(), options)?;
+    inputs::check_outputs(args.outputs(), &files_read(&style, &loaded.scene))?;
+    draw(args, style, loaded)
 }
 
-fn draw(args: &Args, options: &LoadOptions, is_instead: bool) -> Result<(), Failure> {
+/// Refuses what only an adapter does.
+fn check(args: &Args) -> Result<(), Failure> {
     if args.is_watched() || args.has_aovs() {
         return Err(Failure::usage("--watch and --aov are of the adapter: give them without --renderer reference"));
     }
+    Ok(())
+}
+
+fn draw(args: &Args, mut style: Style, loaded: Loaded) -> Result<(), Failure> {
     let start = Instant::now();
-    let mut style = inputs::load_style(args.style())?;
     keep_warnings(&mut style);
-    let loaded = inputs::load_scenes(args.scenes(), options)?;
-    inputs::check_outputs(args.outputs(), &files_read(&style, &loaded.scene))?;
-    if is_instead {
-        tell(instead());
-    }
     inputs::print_warnings(&style, &loaded.scene, args.scenes());
     let atoms = loaded.scene.molecule.atoms.len();
     let triangles = loaded.scene.assembly.num_triangles();
     let exact = Exact::new(loaded.scene, style, None);
     let stop = stopped_by_interrupt();
     let request = Request { samples: args.samples(SAMPLES), ..args.request() };
-    let mut frame_ms = Vec::new();
-    let count = args.turntable();
-    let outputs: Vec<_> = args.outputs().map(Some).collect();
-    let pictures = if outputs.is_empty() { vec![None] } else { outputs };
-    for (index, output) in (0u32..).zip(pictures) {
-        let turn_deg = count.map_or(0.0, |count| 360.0 * index as f32 / count as f32);
+    let timed = |request: &Request, output: Option<&Path>| {
         let frame = Instant::now();
-        draw_to(&exact, &Request { turn_deg, ..request }, output.as_deref(), args.json(), &stop)?;
-        frame_ms.push(frame.elapsed().as_secs_f64() * 1e3);
+        draw_to(&exact, request, output, args.json(), &stop)?;
+        Ok::<f64, Failure>(rounded(frame.elapsed().as_secs_f64() * 1e3))
+    };
+    let count = args.turntable().unwrap_or(1);
+    let outputs: Vec<PathBuf> = args.outputs().collect();
+    let mut first_frame_ms = None;
+    for index in 0..count {
+        let turn_deg = 360.0 * index as f32 / count as f32;
+        let ms = timed(&Request { turn_deg, ..request }, outputs.get(index as usize).map(PathBuf::as_path))?;
+        first_frame_ms.get_or_insert(ms);
+    }
+    let mut frame_ms = Vec::new();
+    for _ in 0..args.frames() {
+        frame_ms.push(timed(&request, None)?);
     }
     if args.json() {
         let line = serde_json::json!({
@@ -75,11 +85,12 @@ fn draw(args: &Args, options: &LoadOptions, is_instead: bool) -> Result<(), Fail
             "adapter": null,
             "renderer": "reference",
             "threads": exact.threads(),
-            "load_ms": loaded.ms,
+            "load_ms": rounded(loaded.ms),
+            "first_frame_ms": first_frame_ms,
             "frame_ms": frame_ms,
             "atoms": atoms,
             "mesh_triangles": triangles,
-            "total_ms": start.elapsed().as_secs_f64() * 1e3,
+            "total_ms": rounded(loaded.ms + start.elapsed().as_secs_f64() * 1e3),
         });
         answer(line)?;
     }
@@ -103,16 +114,15 @@ fn draw_to(
     is_quiet: bool,
     stop: &AtomicBool,
 ) -> Result<(), Failure> {
-    let bar = if is_quiet { ProgressBar::hidden() } else { ProgressBar::new(u64::from(request.size[1])) };
+    let bar = progress_bar(u64::from(request.size[1]), is_quiet);
     let look = ProgressStyle::with_template("{bar:40} {percent} % of the rows, {eta} left");
     bar.set_style(look.unwrap_or_else(|_| ProgressStyle::default_bar()));
     let mut progress = |rows| {
         bar.set_position(u64::from(rows));
         if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let broken_off = || Failure::interrupted();
     let drawn = match output {
-        None => exact.draw_rows(request, &mut progress, &mut |_| Ok(())).map_err(|_| broken_off()),
+        None => exact.draw_rows(request, &mut progress, &mut |_| Ok(())).map_err(|_| Failure::interrupted()),
         Some(output) => {
             let header = RowsHeader { size: request.size, opaque: exact.is_opaque(request), wide: request.wide };
             let mut is_broken_off = false;
@@ -126,7 +136,7 @@ fn draw_to(
             });
             match written {
                 Ok(()) => Ok(()),
-                Err(_) if is_broken_off => Err(broken_off()),
+                Err(_) if is_broken_off => Err(Failure::interrupted()),
                 Err(error) => Err(Failure::input(cannot_write(output, &error))),
             }
         }

@@ -87,6 +87,11 @@ impl Args {
         self.samples.unwrap_or(default)
     }
 
+    /// How many warm frames to time.
+    pub(super) fn frames(&self) -> u32 {
+        self.frames
+    }
+
     /// How many pictures of a turn.
     pub(super) fn turntable(&self) -> Option<u32> {
         self.turntable
@@ -194,12 +199,12 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         let loaded: Result<Loaded, Failure> = inputs::load_scenes(&args.scenes, &options);
         (gpu.join(), loaded, style)
     });
-    let (gpu, device_ms) = gpu.map_err(|_| Failure::from(GpuError::NoAdapter))?;
-    if args.renderer == Renderer::Auto && matches!(gpu, Err(GpuError::NoAdapter)) {
-        return exact::run_instead(args, &options);
-    }
     let (style, loaded) = (style?, loaded?);
     inputs::check_outputs(args.outputs(), &files_read(&style, &loaded.scene))?;
+    let (gpu, device_ms) = gpu.map_err(|_| Failure::from(GpuError::NoAdapter))?;
+    if args.renderer == Renderer::Auto && matches!(gpu, Err(GpuError::NoAdapter)) {
+        return exact::run_instead(args, style, loaded);
+    }
     let gpu = Arc::new(gpu?);
     inputs::print_warnings(&style, &loaded.scene, &args.scenes);
     let mut engine = Engine::new(gpu, loaded.scene, style);

@@ -16,7 +16,7 @@ use crate::reference::{
     self, BrokenOff, Cylinder, HullLook, Lens, Look, Material, Meshes, Occlusion, Optics, Part, Picture, RowSink,
     Settings, Shade, Sphere, World,
 };
-use crate::scene::{Camera, Image, Pixels, Scene};
+use crate::scene::{Camera, Image, Pixels, Scene, srgb_from_linear};
 use crate::shading::{SHADERS, basic::BasicMaterial, toon::ToonMaterial};
 
 /// Post effects that the reference draws, by their names in style files.
@@ -269,12 +269,6 @@ fn encoded(rows: &[[f32; 4]], wide: bool) -> Vec<u8> {
         }
     }
     bytes
-}
-
-/// The sRGB transfer curve [IEC61966, part 2-1].
-fn srgb_from_linear(light: f64) -> f64 {
-    let c = light.clamp(0.0, 1.0);
-    if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
 }
 
 #[cfg(test)]

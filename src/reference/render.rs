@@ -94,10 +94,14 @@ pub fn render<E: From<BrokenOff>>(
         let rows = TILE_PX.min(height - top);
         let band = Mutex::new(vec![[0.0f32; 4]; width as usize * rows as usize]);
         let (next, stopped) = (AtomicU32::new(0), AtomicBool::new(false));
-        let work = || {
+        let work = |goes_on: &mut dyn FnMut() -> bool| {
             loop {
                 let column = next.fetch_add(1, Ordering::Relaxed);
                 if column >= columns || stopped.load(Ordering::Relaxed) {
+                    break;
+                }
+                if !goes_on() {
+                    stopped.store(true, Ordering::Relaxed);
                     break;
                 }
                 let left = column * TILE_PX;
@@ -113,12 +117,12 @@ pub fn render<E: From<BrokenOff>>(
         };
         std::thread::scope(|scope| {
             for _ in 1..settings.threads.max(1) {
-                scope.spawn(work);
+                scope.spawn(|| work(&mut || true));
             }
-            work();
+            // This thread hears between its tiles whether to stop.
+            work(&mut || progress(top).is_continue());
         });
-        if progress(top + rows).is_break() {
-            stopped.store(true, Ordering::Relaxed);
+        if stopped.into_inner() || progress(top + rows).is_break() {
             return Err(BrokenOff.into());
         }
         sink(&band.into_inner().unwrap_or_default())?;

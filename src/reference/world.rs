@@ -14,7 +14,7 @@ use obvhs::{Boundable, BvhBuildParams};
 
 use super::hull::Outline;
 use super::primitive::{Ray, cone_span, cylinder_normal, sphere_span, triangle_hit};
-use crate::scene::{Scene, unpack_normal};
+use crate::scene::{Scene, linear_from_srgb, unpack_normal};
 
 /// How an object looks.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -438,18 +438,13 @@ impl World {
         surface.material = part.look.material;
         surface.color = part.look.color;
         if part.has_vertex_colors {
-            let colors =
-                vertices.map(|vertex| shape.colors[vertex as usize].map(linear_from_srgb)).map(DVec3::from_array);
+            let colors = vertices
+                .map(|vertex| shape.colors[vertex as usize].map(|value| linear_from_srgb(f64::from(value) / 255.0)))
+                .map(DVec3::from_array);
             surface.color *= shares.x * colors[0] + shares.y * colors[1] + shares.z * colors[2];
         }
         surface
     }
-}
-
-/// Linear light of an sRGB value of 8 bits [IEC61966, part 2-1].
-fn linear_from_srgb(value: u8) -> f64 {
-    let c = f64::from(value) / 255.0;
-    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }
 
 fn boxed(low: DVec3, high: DVec3, center: DVec3, slack: f64) -> Bounds {

@@ -34,6 +34,7 @@ mod molecule;
 mod name;
 mod report;
 mod sphere;
+mod srgb;
 
 pub use aov::{AovImage, AovName};
 pub use bonds::FileBond;
@@ -50,6 +51,7 @@ pub use molecule::{Atom, Bond, Chain, Molecule, MoleculeCopy, Residue, ResidueKi
 pub use name::Name;
 pub use report::{Note, NoteKind, Report};
 pub use sphere::bounding_sphere;
+pub use srgb::{linear_from_srgb, srgb_from_linear};
 
 use std::fs::File;
 use std::io::Read;

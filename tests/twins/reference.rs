@@ -130,23 +130,26 @@ fn occlusion_at(world: &World, place: DVec2, radius: f64, num_rays: u32) -> f64 
     restyle::reference::occluded(world, &world.surface(ray, hit), hit.object, radius, num_rays, 7)
 }
 
+/// As good as without an end.
+const FAR: f64 = 50.0;
+
+/// A floor that faces the eye.
+fn floor() -> [[DVec3; 3]; 2] {
+    let corner = |x: f64, y: f64| DVec3::new(x * FAR, y * FAR, 0.0);
+    quad(corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0))
+}
+
 #[test]
 fn occlusion_beside_a_wall_is_the_integral() {
     // A floor that faces the eye, and a wall at x = 0 that rises from it towards the eye.
-    let far = 50.0;
-    let floor = quad(
-        DVec3::new(-far, -far, 0.0),
-        DVec3::new(far, -far, 0.0),
-        DVec3::new(far, far, 0.0),
-        DVec3::new(-far, far, 0.0),
-    );
+    let far = FAR;
     let wall = quad(
         DVec3::new(0.0, -far, 0.0),
         DVec3::new(0.0, far, 0.0),
         DVec3::new(0.0, far, 4.0),
         DVec3::new(0.0, -far, 4.0),
     );
-    let world = mesh(&[floor, wall].concat());
+    let world = mesh(&[floor(), wall].concat());
     let radius = 2.0;
     for distance in [0.2, 0.5, 0.9] {
         let c: f64 = distance / radius;
@@ -159,14 +162,7 @@ fn occlusion_beside_a_wall_is_the_integral() {
 
 #[test]
 fn occlusion_below_a_sphere_is_the_integral() {
-    let far = 50.0;
-    let floor = quad(
-        DVec3::new(-far, -far, 0.0),
-        DVec3::new(far, -far, 0.0),
-        DVec3::new(far, far, 0.0),
-        DVec3::new(-far, far, 0.0),
-    );
-    let scene = Arc::new(Scene::from_bytes("test.stl", stl(&floor).as_bytes()).expect("a mesh"));
+    let scene = Arc::new(Scene::from_bytes("test.stl", stl(&floor()).as_bytes()).expect("a mesh"));
     let place = DAffine3::from_translation(scene.origin() + DVec3::new(0.0, 0.0, -5.0));
     let parts = vec![Part { part: 0, look: WHITE, has_vertex_colors: false }];
     let above = DVec3::new(0.0, 0.0, -3.6);

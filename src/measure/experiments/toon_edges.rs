@@ -13,7 +13,7 @@ use glam::{Vec2, Vec3};
 use serde_json::json;
 
 use crate::measure::experiment::{Case, ChartKind, ErrorKind, Experiment, GoOn, MeasureError, Setup, Subject, Truth};
-use crate::scene::{Image, Pixels};
+use crate::scene::{Image, Pixels, srgb_from_linear};
 
 /// Bands of light.
 const STEPS: f32 = 4.0;
@@ -215,17 +215,11 @@ impl Sheet {
             let at = [index as u32 % width, index as u32 / width].map(|at| at as f32 + 0.5);
             let is_inside = self.shape.hit(Vec2::new(at[0] - middle.x, middle.y - at[1]), CORNER).is_some();
             let light = if is_inside { color * (value / STEPS) } else { Vec3::ONE };
-            pixels.extend(light.to_array().map(|light| (srgb_from_linear(light) * 65535.0).round() as u16));
+            pixels.extend(light.to_array().map(|light| (srgb_from_linear(f64::from(light)) * 65535.0).round() as u16));
             pixels.push(u16::MAX);
         }
         Image { size: self.size, pixels: Pixels::U16(pixels), opaque: true }
     }
-}
-
-/// The display value of linear light [IEC61966, part 2-1].
-fn srgb_from_linear(light: f32) -> f32 {
-    let c = light.clamp(0.0, 1.0);
-    if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
 }
 
 /// One kind of step on one shape.

@@ -12,6 +12,7 @@ use super::accessor::{Accessor, Component};
 use super::json::{EXPORT_AGAIN, whole};
 use crate::scene::mesh::{RawNormals, RawShape};
 use crate::scene::report::{NoteKind, Report};
+use crate::scene::srgb_from_linear;
 
 /// Elements that small files may have on top of one for each byte of their buffers.
 const SPARE_ELEMENTS: u64 = 1 << 18;
@@ -178,11 +179,9 @@ fn triangles(mode: u64, count: usize, index: impl Fn(usize) -> u32) -> Vec<[u32;
     }
 }
 
-/// A linear share in sRGB [IEC61966 §5.2].
+/// A linear share in sRGB of 8 bits.
 fn srgb(linear: f64) -> u8 {
-    let linear = linear.clamp(0.0, 1.0);
-    let encoded = if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
-    (encoded * 255.0).round() as u8
+    (srgb_from_linear(linear) * 255.0).round() as u8
 }
 
 #[cfg(test)]
