@@ -5,17 +5,6 @@
 // is the outline of an object, not the front that the map holds: the map has the depth of both (ours).
 // A convex object never shades itself: its unlit side is found by n.l, so there is no bias for it.
 
-const MAX_SHADOWS: u32 = 4u;
-
-struct ShadowView {
-    light: View,
-    light_from_view: mat4x4<f32>,
-}
-
-struct Shadows {
-    views: array<ShadowView, 4>,
-}
-
 // Blocks the way from `origin` along `toward` (light space) the object `id`?
 fn blocks(light_view: View, id: u32, origin: vec3<f32>, toward: vec3<f32>) -> bool {
     let ray = Ray(origin, toward);
@@ -54,26 +43,22 @@ fn mesh_light(light_view: View, layer: i32, place_px: vec2<f32>, t: f32, last: v
 fn shadow_light(light: Light, s: Surface) -> f32 {
     let layer = light.shadow;
     let light_view = shadows.views[layer].light;
-    let point = (shadows.views[layer].light_from_view * vec4<f32>(s.position_view, 1.0)).xyz;
-    let t = -point.z;
+    let lit = lit_place(light_view, (shadows.views[layer].light_from_view * vec4<f32>(s.position_view, 1.0)).xyz);
+    let point = lit.point;
+    let t = lit.t;
     if t <= light_view.near { return 1.0; }
-    let ndc = point.xy / (light_view.half_extent * mix(t, 1.0, light_view.orthographic));
-    let place_px = (ndc * vec2<f32>(0.5, -0.5) + 0.5) * light_view.size_px;
+    let place_px = lit.place_px;
+    let texel_light = lit.texel_light;
     let last = vec2<i32>(light_view.size_px) - 1;
     if light.softness_tan <= 0.0 {
         let toward = mix(-normalize(point), vec3<f32>(0.0, 0.0, 1.0), light_view.orthographic);
         let base = vec2<i32>(floor(place_px - 0.5));
         // What a triangle shades is told by depths: the few that the map names would leave gaps between them. Moved a texel
         // and a half outwards, no plane shades itself however it slopes.
-        var mesh_t = t;
-        var mesh_place_px = place_px;
+        var moved = lit;
         if MESHES {
-            let texel_light = light_view.pixel_view * mix(t, 1.0, light_view.orthographic);
             let outwards = (shadows.views[layer].light_from_view * vec4<f32>(s.normal_view, 0.0)).xyz;
-            let moved = point + outwards * (1.5 * texel_light);
-            mesh_t = -moved.z;
-            let moved_ndc = moved.xy / (light_view.half_extent * mix(mesh_t, 1.0, light_view.orthographic));
-            mesh_place_px = (moved_ndc * vec2<f32>(0.5, -0.5) + 0.5) * light_view.size_px;
+            moved = lit_place(light_view, point + outwards * (1.5 * texel_light));
         }
         var seen = s.id;
         for (var i = 0; i < 4; i++) {
@@ -87,11 +72,10 @@ fn shadow_light(light: Light, s: Surface) -> f32 {
             seen = id;
             if blocks(light_view, id, point, toward) { return 0.0; }
         }
-        if MESHES { return mesh_light(light_view, layer, mesh_place_px, mesh_t, last); }
+        if MESHES { return mesh_light(light_view, layer, moved.place_px, moved.t, last); }
         return 1.0;
     }
 
-    let texel_light = light_view.pixel_view * mix(t, 1.0, light_view.orthographic);
     // Two texels: neighbouring objects that touch do not shade each other's seam.
     let near_enough = t - 2.0 * texel_light;
     // A flat receiver goes on beneath the filter: depths are compared with its plane there [Isidoro2006], which is
@@ -141,16 +125,4 @@ fn shadow_tap(light_view: View, layer: i32, place_px: vec2<f32>, last: vec2<i32>
     let depths = light_view.near + (light_view.far - light_view.near) * unpack2x16unorm(seen.y);
     let nothing = seen.x == 0u || seen.x == own || any(texel != inside);
     return select(depths, vec2<f32>(light_view.far), nothing);
-}
-
-// Points spread evenly over the unit disc on a spiral of the golden angle [Vogel1979 eq. 1].
-fn disc_tap(i: u32, turn: f32) -> vec2<f32> {
-    let angle = f32(i) * 2.3999632 + turn;
-    return sqrt((f32(i) + 0.5) / f32(SOFT_TAPS)) * vec2<f32>(cos(angle), sin(angle));
-}
-
-// A value in 0..1 for each texel, different among neighbours [Jimenez2014 p. 123].
-fn interleaved_noise(place_px: vec2<f32>) -> f32 {
-    let p = floor(place_px);
-    return fract(52.9829189 * fract(dot(p, vec2<f32>(0.06711056, 0.00583715))));
 }

@@ -42,18 +42,19 @@ fn band_integral(x: f32, steps: f32) -> f32 {
     return k * (x - 0.5 * (k + 1.0));
 }
 
-// The level of light for the cosine n.l [Prost2016 eq. 1 and 2], with two mends: the base never falls
-// below 0, and the top band reaches down to its floor instead of being the single point x = 1.
+// The level of light for the cosine n.l [Prost2016 eq. 1 and 2], with two mends: a base below 0 has the
+// level of 0, and the top band reaches down to its floor instead of being the single point x = 1.
 // `gradient` is how fast n.l changes over one pixel.
 fn toon_level(cosine: f32, gradient: f32, m: ToonMaterial) -> f32 {
     if m.scale == 0.0 || m.steps < 2.0 { return min(m.top, 1.0); }
     let reach = m.scale + m.bias;
-    let share = max(m.scale * cosine + m.bias, 0.0) / reach;
+    let share = (m.scale * cosine + m.bias) / reach;
+    // Below 0 as well, so that pixels whose middle has no light are not lit by bands beyond.
     var x = m.steps * share;
     // d x / d n.l, times n.l per pixel.
     var slope = m.steps * m.scale / reach;
     if TOON_EXPONENT {
-        x = m.steps * pow(share, m.exponent);
+        x = m.steps * pow(max(share, 0.0), m.exponent);
         slope = x * m.exponent * m.scale / max(share * reach, 1e-6);
     }
     let k = band_mean(x, min(slope * gradient, m.steps), m.steps);

@@ -87,7 +87,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         }
     }
     if args.experiment == "all" {
-        let index = page::write_index(&reports, &args.output).map_err(cannot_write_page)?;
+        let index = page::write_overview(&reports, &args.output).map_err(cannot_write_page)?;
         answer(format_args!("{} experiments; open {}", reports.len(), index.display()))?;
     }
     match reports.last().filter(|report| report.is_partial) {

@@ -27,7 +27,7 @@ use crate::shading::SHADERS;
 use build::ObjectKey;
 use live::Live;
 
-pub use crate::frame::MAX_SAMPLES;
+pub use crate::frame::{MAX_SAMPLES, ShadowFilter, ShadowQuality};
 pub use crate::gpu::{Counters, Gpu, GpuError};
 pub use live::{Part, Refusal, Reload, ReloadTimes, Sources, source_tree_shaders};
 pub use tiles::TileError;
@@ -171,6 +171,11 @@ impl Engine {
             self.content = Some(Content::new(content.scene, Arc::new(style)));
             self.stale = true;
         }
+    }
+
+    /// Changes how fine the shadows of the next frames are.
+    pub fn set_shadow_quality(&mut self, quality: ShadowQuality) {
+        self.renderer.set_shadow_quality(quality);
     }
 
     /// Replaces the scene.
@@ -317,6 +322,11 @@ impl Engine {
     /// What was asked of the device so far.
     pub fn counters(&self) -> Counters {
         self.gpu.counters()
+    }
+
+    /// Bytes of the objects on the device.
+    pub fn object_bytes(&self) -> u64 {
+        self.renderer.object_bytes()
     }
 
     /// Bytes of each target of the last frame.

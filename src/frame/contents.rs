@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::objects::{self, DrawList, Material, ObjectBuffers};
 use super::occlusion::Reach;
 use super::shade::{ShadeKey, ShaderNeeds};
+use super::shadow::ShadowFilter;
 use super::visibility::DrawnKinds;
 use crate::gpu::{Gpu, GpuError, KeptBuffer};
 use crate::shading::{MAX_MATERIALS, SHADERS};
@@ -116,6 +117,7 @@ impl Needs {
             point_lights: false,
             shadows: false,
             soft_taps: 0,
+            shadow_filter: ShadowFilter::default(),
             orthographic: false,
             encode: false,
             geometry: false,

@@ -360,6 +360,13 @@ impl MeshBuffers {
         Some([self.vertices.view()?, self.triangles.view()?, self.parts.view()?, self.runs.view()?, self.pages.view()?])
     }
 
+    /// Bytes on the device.
+    pub fn bytes(&self) -> u64 {
+        let textures = [&self.vertices, &self.triangles, &self.parts, &self.runs, &self.pages];
+        let indices = self.indices.as_ref().map_or(0, wgpu::Buffer::size);
+        textures.iter().map(|texture| texture.bytes()).sum::<u64>() + indices
+    }
+
     /// The draws, and the indices that they draw by.
     pub fn draws(&self) -> Option<(&[MeshDraw], &wgpu::Buffer)> {
         Some((&self.draws.draws, self.indices.as_ref()?))

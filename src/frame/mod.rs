@@ -32,7 +32,7 @@ use post::{EffectGroups, Post, PostTargets};
 pub use resolve::resolve_module;
 pub use shade::{Output, ShadeKey, ShaderNeeds, shade_module};
 use shade::{Shade, ShadeInputs, ShadeTarget};
-pub use shadow::{MAX_SHADOWS, SHADOWLESS_RADII, ShadowView, Shadows};
+pub use shadow::{MAX_SHADOWS, SHADOWLESS_RADII, ShadowFilter, ShadowQuality, ShadowView, Shadows};
 use shadow::{ShadowMaps, ShadowPlan};
 pub use targets::TargetBytes;
 use targets::Targets;
@@ -139,10 +139,10 @@ struct Plan {
 }
 
 impl Plan {
-    fn new(gpu: &Gpu, needs: &Needs, input: &FrameInput<'_>) -> Plan {
+    fn new(gpu: &Gpu, needs: &Needs, input: &FrameInput<'_>, quality: ShadowQuality) -> Plan {
         let samples = input.samples.clamp(1, MAX_SAMPLES);
         let direct = samples == 1 && !input.wide;
-        let map_size = shadow::map_size(gpu, input.size[1]);
+        let map_size = quality.map_size(gpu, input.size[1]);
         let shadows = ShadowPlan::new(input.lighting, input.camera, input.bounds, map_size);
         let shadowed = !shadows.views.is_empty();
         let orthographic = input.camera.orthographic;
@@ -150,7 +150,8 @@ impl Plan {
             lights: input.lighting.lights.len().min(MAX_LIGHTS) as u32,
             point_lights: input.lighting.lights.iter().any(|light| matches!(light.place, LightPlace::Point { .. })),
             shadows: shadowed,
-            soft_taps: if shadowed { shadow::soft_taps(samples) } else { 0 },
+            soft_taps: if shadowed { quality.soft_taps(samples) } else { 0 },
+            shadow_filter: quality.filter,
             orthographic,
             encode: direct && input.effects.is_empty(),
             geometry: !input.effects.is_empty(),
@@ -181,6 +182,7 @@ pub struct Renderer {
     eye: Eye,
     light_eyes: Vec<Eye>,
     maps: Option<ShadowMaps>,
+    shadow_quality: ShadowQuality,
     last_times: PassTimes,
 }
 
@@ -200,8 +202,14 @@ impl Renderer {
             eye: Eye::default(),
             light_eyes: Vec::new(),
             maps: None,
+            shadow_quality: ShadowQuality::default(),
             last_times: Vec::new(),
         }
+    }
+
+    /// Changes how fine the shadows of the next frames are.
+    pub fn set_shadow_quality(&mut self, quality: ShadowQuality) {
+        self.shadow_quality = quality;
     }
 
     /// Replaces the materials and, where `list` is given, the objects. On an error what was drawn stays.
@@ -224,7 +232,7 @@ impl Renderer {
     ) -> Result<(), GpuError> {
         check_size(&self.gpu, input)?;
         let needs = self.contents.needs_of(&self.gpu, list, materials)?;
-        self.build(&needs, &Plan::new(&self.gpu, &needs, input), input.wide)
+        self.build(&needs, &Plan::new(&self.gpu, &needs, input, self.shadow_quality), input.wide)
     }
 
     /// Builds all pipelines anew from the shaders as they are now.
@@ -274,7 +282,7 @@ impl Renderer {
 
         // What this frame needs, and what of it is not there yet.
         let needs = self.contents.needs();
-        let plan = Plan::new(&gpu, &needs, input);
+        let plan = Plan::new(&gpu, &needs, input, self.shadow_quality);
         self.build(&needs, &plan, input.wide)?;
         let output_format = if input.wide { OUTPUT_16 } else { OUTPUT_8 };
         self.targets.fit(&gpu, input.drawn_size(), output_format, !plan.direct, plan.effects.len());
@@ -451,6 +459,11 @@ impl Renderer {
     /// Spheres and cylinders that are drawn.
     pub fn object_counts(&self) -> [u32; 2] {
         [self.contents.objects.num_atoms, self.contents.objects.num_connectors]
+    }
+
+    /// Bytes of the objects on the device.
+    pub fn object_bytes(&self) -> u64 {
+        self.contents.objects.bytes()
     }
 
     /// Bytes of each target of the last frame.

@@ -157,6 +157,11 @@ impl ObjectBuffers {
         Ok(())
     }
 
+    /// Bytes on the device.
+    pub fn bytes(&self) -> u64 {
+        self.atoms.bytes() + self.connectors.bytes() + self.meshes.bytes()
+    }
+
     /// Atoms, connectors and the five of meshes to bind; none before the first content.
     pub fn views(&self) -> Option<[wgpu::TextureView; 7]> {
         let (atoms, connectors) = (self.atoms.view()?, self.connectors.view()?);

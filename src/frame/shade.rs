@@ -6,9 +6,9 @@ use std::fmt::Write as _;
 
 use super::lights::Lights;
 use super::post;
-use super::shadow::{ShadowMaps, Shadows};
+use super::shadow::{ShadowFilter, ShadowMaps, Shadows};
 use super::visibility::{DEPTH_FORMAT, SceneBindings, Visibility};
-use crate::gpu::{Bound, Gpu, GpuError, KeptBindGroup, KeptBuffer, Module, PassTimer};
+use crate::gpu::{Bound, Gpu, GpuError, KeptBindGroup, KeptBuffer, Module, PassTimer, Wgsl};
 use crate::gpu_struct;
 use crate::shading::{self, ObjectShader, SHADERS, UploadedResource};
 use crate::wgsl;
@@ -50,6 +50,8 @@ pub struct ShadeKey {
     pub shadows: bool,
     /// Taps of a soft shadow's filter, for one sample.
     pub soft_taps: u32,
+    /// What of the shadow maps tells shadows.
+    pub shadow_filter: ShadowFilter,
     /// Whether the camera is orthographic.
     pub orthographic: bool,
     /// Straight to 8-bit picture values, instead of adding up linear light.
@@ -359,9 +361,14 @@ pub fn shade_module(key: &ShadeKey) -> Module {
         if key.meshes { wgsl!("lib/mesh.wgsl") } else { wgsl!("lib/mesh_none.wgsl") },
         wgsl!("lib/surface.wgsl"),
         wgsl!("lib/lights.wgsl"),
-        if key.shadows { wgsl!("lib/shadow.wgsl") } else { wgsl!("lib/shadow_none.wgsl") },
         wgsl!("lib/encode.wgsl"),
     ]);
+    let shadow_files: &[Wgsl] = match (key.shadows, key.shadow_filter) {
+        (false, _) => &[wgsl!("lib/shadow_none.wgsl")],
+        (true, ShadowFilter::Objects) => &[wgsl!("lib/shadow_maps.wgsl"), wgsl!("lib/shadow.wgsl")],
+        (true, _) => &[wgsl!("lib/shadow_maps.wgsl"), wgsl!("lib/shadow_depths.wgsl")],
+    };
+    shadow_files.iter().for_each(|file| module.add(*file));
     let mut bindings = format!(
         "const ORTHOGRAPHIC: bool = {};\nconst ENCODE: bool = {};\nconst ATOMS: bool = {};\nconst CONNECTORS: bool = {};\nconst MESHES: bool = {};\nconst HULLS: bool = {};\n\
          const SHADOWS: bool = {};\nconst LIGHT_COUNT: u32 = {}u;\nconst POINT_LIGHTS: bool = {};\n",
@@ -380,7 +387,9 @@ pub fn shade_module(key: &ShadeKey) -> Module {
             "@group(1) @binding(3) var<uniform> shadows: Shadows;\n\
              @group(1) @binding(4) var shadow_maps: texture_2d_array<u32>;\n",
         );
-        bindings.push_str(&format!("const SOFT_TAPS: u32 = {}u;\n", key.soft_taps));
+        let filter = key.shadow_filter.number();
+        bindings
+            .push_str(&format!("const SOFT_TAPS: u32 = {}u;\nconst SHADOW_FILTER: u32 = {filter}u;\n", key.soft_taps));
     }
     let mut binding = FIRST_SHADER_BINDING;
     let mut cases = String::new();

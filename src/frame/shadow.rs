@@ -12,8 +12,8 @@ use crate::scene::{Camera, LightPlace, Lighting, Sphere};
 pub const MAX_SHADOWS: usize = 4;
 
 gpu_struct! {
-    "lib/shadow.wgsl",
-    /// See `shaders/lib/shadow.wgsl`.
+    "lib/shadow_maps.wgsl",
+    /// See `shaders/lib/shadow_maps.wgsl`.
     pub struct ShadowView {
         /// The light's view of the scene.
         pub light: View,
@@ -23,8 +23,8 @@ gpu_struct! {
 }
 
 gpu_struct! {
-    "lib/shadow.wgsl",
-    /// See `shaders/lib/shadow.wgsl`.
+    "lib/shadow_maps.wgsl",
+    /// See `shaders/lib/shadow_maps.wgsl`.
     pub struct Shadows {
         /// One for each layer of the maps.
         pub views: [ShadowView; MAX_SHADOWS],
@@ -117,17 +117,53 @@ fn point(position: Vec3, center: Vec3, radius: f32) -> Option<Camera> {
     })
 }
 
-/// Taps that find the blockers of a soft shadow, and again that filter it, in one sample of a still. They turn from
-/// sample to sample, so that many samples need few each; below 8 the search misses thin blockers (ours).
-pub fn soft_taps(samples: u32) -> u32 {
-    (32 / samples.max(1)).clamp(8, 16)
+/// What of the maps tells shadows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub enum ShadowFilter {
+    /// The objects that a map names, and depths where they are triangles or the shadow is soft.
+    #[default]
+    Objects,
+    /// Depths: of one texel where hard, within the penumbra where soft. As published, for measurements.
+    Depth,
+    /// Depths of 3x3 texels where hard. As published, for measurements.
+    DepthShare,
 }
 
-/// Texels along a side of the map: about one and a half for each pixel that the picture spends on the scene, since the
-/// exact test of the hard edge needs only ids, and the soft filter is wider than a texel.
-pub fn map_size(gpu: &Gpu, picture_height_px: u32) -> u32 {
-    let wanted = (picture_height_px + picture_height_px / 2).next_multiple_of(64);
-    wanted.clamp(256, 4096).min(gpu.device.limits().max_texture_dimension_2d)
+impl ShadowFilter {
+    /// Its number in WGSL.
+    pub fn number(self) -> u32 {
+        match self {
+            ShadowFilter::Objects => 0,
+            ShadowFilter::Depth => 1,
+            ShadowFilter::DepthShare => 2,
+        }
+    }
+}
+
+/// How fine shadows are. Measurements vary it; what is none follows the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ShadowQuality {
+    /// Texels along a side of each map.
+    pub map_size: Option<u32>,
+    /// Taps of a soft shadow in one sample.
+    pub soft_taps: Option<u32>,
+    /// What of the maps tells shadows.
+    pub filter: ShadowFilter,
+}
+
+impl ShadowQuality {
+    /// Taps that find the blockers of a soft shadow, and again that filter it, in one sample of a still. They turn from
+    /// sample to sample, so that many samples need few each; below 8 the search misses thin blockers (ours).
+    pub fn soft_taps(&self, samples: u32) -> u32 {
+        self.soft_taps.unwrap_or_else(|| (32 / samples.max(1)).clamp(8, 16))
+    }
+
+    /// Texels along a side of the map: about one and a half for each pixel that the picture spends on the scene, since
+    /// the exact test of the hard edge needs only ids, and the soft filter is wider than a texel.
+    pub fn map_size(&self, gpu: &Gpu, picture_height_px: u32) -> u32 {
+        let wanted = (picture_height_px + picture_height_px / 2).next_multiple_of(64).clamp(256, 4096);
+        self.map_size.unwrap_or(wanted).min(gpu.device.limits().max_texture_dimension_2d)
+    }
 }
 
 /// The maps: ids and depths, one layer for each light.

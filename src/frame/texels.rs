@@ -31,6 +31,12 @@ impl KeptTexture {
         self.texture.as_ref().map(|(_, view)| view.clone())
     }
 
+    /// Bytes of the texture.
+    pub fn bytes(&self) -> u64 {
+        let rows = self.texture.as_ref().map_or(0, |(texture, _)| texture.height());
+        u64::from(rows) * ROW_BYTES as u64
+    }
+
     /// Replaces the content, a multiple of 16 bytes.
     pub fn set(&mut self, gpu: &Gpu, bytes: &[u8]) {
         let rows = bytes.len().div_ceil(ROW_BYTES).max(1) as u32;

@@ -7,7 +7,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::experiment::{ChartKind, ErrorKind, MeasureError};
 use super::front::pareto;
-use super::run::{Report, Row};
+use super::run::{Report, Row, geometric_mean};
 
 /// Pixels of the picture.
 const SIZE: (u32, u32) = (900, 560);
@@ -55,7 +55,9 @@ pub fn svg(report: &Report) -> Result<String, MeasureError> {
     {
         let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
         let drawn = match report.chart {
-            ChartKind::CostAgainstError { error, per_pixel } => cost_against_error(&root, report, error, per_pixel),
+            ChartKind::CostAgainstError { error, per_pixel, has_front } => {
+                cost_against_error(&root, report, error, per_pixel, has_front)
+            }
             ChartKind::TimeByExtent { extent } => time_by_extent(&root, report, extent),
         };
         drawn
@@ -86,20 +88,20 @@ fn color(index: usize) -> RGBColor {
 
 /// Geometric mean of each coordinate.
 fn mean(points: &[[f64; 2]]) -> [f64; 2] {
-    [0, 1].map(|axis| (points.iter().map(|point| point[axis].ln()).sum::<f64>() / points.len() as f64).exp())
+    [0, 1].map(|axis| geometric_mean(points.iter().map(|point| point[axis])))
 }
 
 /// Points of cost and error, averaged over scenes.
 fn series(report: &Report, error: ErrorKind, per_pixel: bool) -> Vec<Series<'_>> {
     let at = |row: &Row| {
         let cost = if per_pixel { row.median_ns_per_pixel() } else { row.median_ms() };
-        let error = error.of(row.error.as_ref()?).max(error.floor());
+        let error = error.of(row)?.max(error.floor());
         (cost > 0.0).then_some([cost, error])
     };
-    let names = distinct(&report.rows, |row| &row.series);
+    let names = distinct(&report.rows, |row| &row.entry.series);
     let of = |(index, name): (usize, &'_ str)| {
-        let rows: Vec<&Row> = report.rows.iter().filter(|row| row.series == name).collect();
-        let mut marks: Vec<&str> = rows.iter().map(|row| &*row.point).collect();
+        let rows: Vec<&Row> = report.rows.iter().filter(|row| row.entry.series == name).collect();
+        let mut marks: Vec<&str> = rows.iter().map(|row| &*row.entry.point).collect();
         let mut seen = Vec::new();
         marks.retain(|mark| {
             let is_new = !seen.contains(mark);
@@ -107,9 +109,10 @@ fn series(report: &Report, error: ErrorKind, per_pixel: bool) -> Vec<Series<'_>>
             is_new
         });
         let points = marks.iter().filter_map(|mark| {
-            let rows = || rows.iter().filter(|row| row.point == *mark);
+            let rows = || rows.iter().filter(|row| row.entry.point == *mark);
             let parts: Vec<[f64; 2]> = rows().filter_map(|row| at(row)).collect();
-            (!parts.is_empty()).then(|| Point { at: mean(&parts), is_published: rows().any(|row| row.is_published) })
+            (!parts.is_empty())
+                .then(|| Point { at: mean(&parts), is_published: rows().any(|row| row.entry.is_published) })
         });
         (index, points.collect::<Vec<_>>(), rows.iter().filter_map(|row| at(row)).collect::<Vec<_>>())
     };
@@ -122,12 +125,19 @@ fn series(report: &Report, error: ErrorKind, per_pixel: bool) -> Vec<Series<'_>>
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-fn cost_against_error(root: &Area<'_>, report: &Report, error: ErrorKind, per_pixel: bool) -> Result<(), String> {
+fn cost_against_error(
+    root: &Area<'_>,
+    report: &Report,
+    error: ErrorKind,
+    per_pixel: bool,
+    has_front: bool,
+) -> Result<(), String> {
     let series = series(report, error, per_pixel);
     let cost = if per_pixel { "cost: ns per pixel" } else { "cost: ms per frame" };
     let mut chart = plot(root, &series, [cost, error.title()])?;
     let all: Vec<[f64; 2]> = series.iter().flat_map(|series| series.points.iter().map(|point| point.at)).collect();
-    let front: Vec<(f64, f64)> = pareto(&all).into_iter().map(|index| (all[index][0], all[index][1])).collect();
+    let best = if has_front { pareto(&all) } else { Vec::new() };
+    let front: Vec<(f64, f64)> = best.into_iter().map(|index| (all[index][0], all[index][1])).collect();
     let has_front = front.len() > 1;
     for series in &series {
         chart
@@ -151,13 +161,14 @@ fn cost_against_error(root: &Area<'_>, report: &Report, error: ErrorKind, per_pi
 }
 
 fn time_by_extent(root: &Area<'_>, report: &Report, extent: &str) -> Result<(), String> {
-    let names = distinct(&report.rows, |row| &row.series);
-    let marks = distinct(&report.rows, |row| &row.point);
+    let names = distinct(&report.rows, |row| &row.entry.series);
+    let marks = distinct(&report.rows, |row| &row.entry.point);
     let mut series = Vec::new();
     for (index, name) in names.iter().enumerate() {
         for (thin, mark) in marks.iter().enumerate() {
-            let rows = report.rows.iter().filter(|row| row.series == *name && row.point == *mark);
-            let points = rows.map(|row| Point { at: [row.extent, row.median_ms()], is_published: row.is_published });
+            let rows = report.rows.iter().filter(|row| row.entry.series == *name && row.entry.point == *mark);
+            let points =
+                rows.map(|row| Point { at: [row.entry.extent, row.median_ms()], is_published: row.entry.is_published });
             let points: Vec<Point> = points.filter(|point| point.at.iter().all(|value| *value > 0.0)).collect();
             series.push(Series { name, color: color(index), points, parts: Vec::new(), is_thin: thin > 0 });
         }

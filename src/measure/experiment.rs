@@ -7,7 +7,6 @@ use std::sync::Arc;
 
 use serde_json::{Map, Value as Json};
 
-use super::metrics::Metrics;
 use super::run::Row;
 use crate::engine::{Gpu, GpuError};
 use crate::scene::Image;
@@ -56,7 +55,7 @@ pub trait Subject {
         Ok(Vec::new())
     }
 
-    /// Bytes of the targets of the last frame.
+    /// Bytes of objects and targets of the last frame.
     fn bytes(&self) -> u64 {
         0
     }
@@ -96,17 +95,18 @@ impl Truth {
     }
 }
 
-/// One row of an experiment: a method with its settings on a scene.
-pub struct Case {
+/// A method with its settings on a scene: what a row of an experiment stands for.
+#[derive(Debug, Clone)]
+pub struct Entry {
     /// What is drawn.
     pub scene: String,
     /// What draws it.
     pub method: String,
     /// With which settings.
     pub settings: Map<String, Json>,
-    /// The colour of its points: cases of one series share it and are joined by a line.
+    /// The colour of its points: entries of one series share it and are joined by a line.
     pub series: String,
-    /// Cases of one series and one point are averaged over scenes in the chart of cost and error.
+    /// Entries of one series and one point are averaged over scenes in the chart of cost and error.
     pub point: String,
     /// How large the scene is, for charts of time by size.
     pub extent: f64,
@@ -114,10 +114,24 @@ pub struct Case {
     pub is_published: bool,
     /// Width and height in pixels.
     pub size: [u32; 2],
+}
+
+/// A figure of a picture beside its metrics: what it is called, and its value.
+pub type Figure = (&'static str, f64);
+
+/// Finds figures of a picture (second) that is held against its truth (first).
+pub type Judge = Rc<dyn Fn(&Image, &Image) -> Vec<Figure>>;
+
+/// What becomes a row of an experiment.
+pub struct Case {
+    /// What it stands for.
+    pub entry: Entry,
     /// What is measured.
     pub subject: Box<dyn Subject>,
     /// What it should look like; none where only time counts.
     pub truth: Option<Rc<Truth>>,
+    /// What is asked of the picture beside the metrics that all have.
+    pub judge: Option<Judge>,
 }
 
 /// Which error a chart shows.
@@ -127,14 +141,22 @@ pub enum ErrorKind {
     Flip,
     /// Root mean square of display values.
     Rmse,
+    /// A [`Figure`] of 0 for none to 1, by its name.
+    Figure {
+        /// As the judge calls it.
+        name: &'static str,
+        /// What an axis says.
+        title: &'static str,
+    },
 }
 
 impl ErrorKind {
-    /// Its value.
-    pub fn of(self, metrics: &Metrics) -> f64 {
+    /// Its value; none where the picture was not held against a truth.
+    pub fn of(self, row: &Row) -> Option<f64> {
         match self {
-            ErrorKind::Flip => metrics.flip,
-            ErrorKind::Rmse => metrics.display.rmse.all,
+            ErrorKind::Flip => row.error.as_ref().map(|metrics| metrics.flip),
+            ErrorKind::Rmse => row.error.as_ref().map(|metrics| metrics.display.rmse.all),
+            ErrorKind::Figure { name, .. } => row.figure(name),
         }
     }
 
@@ -143,6 +165,7 @@ impl ErrorKind {
         match self {
             ErrorKind::Flip => "error: mean FLIP, 0 to 1",
             ErrorKind::Rmse => "error: RMSE of display values, 0 to 1",
+            ErrorKind::Figure { title, .. } => title,
         }
     }
 
@@ -151,24 +174,30 @@ impl ErrorKind {
         match self {
             ErrorKind::Flip => "FLIP",
             ErrorKind::Rmse => "RMSE",
+            ErrorKind::Figure { name, .. } => name,
         }
     }
 
-    /// The smallest error that a chart tells from none: less than eight bits a channel show.
+    /// The smallest error that a chart tells from none: less than eight bits a channel show, or pixels can count.
     pub fn floor(self) -> f64 {
-        1e-4
+        match self {
+            ErrorKind::Flip | ErrorKind::Rmse => 1e-4,
+            ErrorKind::Figure { .. } => 1e-3,
+        }
     }
 }
 
 /// What the chart of an experiment has on its axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ChartKind {
-    /// Cost against error, a front through the best.
+    /// Cost against error.
     CostAgainstError {
         /// On the vertical axis.
         error: ErrorKind,
         /// Cost in ns a pixel instead of ms a frame.
         per_pixel: bool,
+        /// A line through what nothing beats in both; not where series draw different things.
+        has_front: bool,
     },
     /// Milliseconds by the extent of a scene.
     TimeByExtent {
@@ -191,6 +220,8 @@ pub trait Experiment: Sync {
     }
     /// How its numbers come about: truth, samples, what is left out. One paragraph each.
     fn conditions(&self, setup: &Setup) -> Vec<String>;
+    /// What its chart says, in two sentences with the figures of these rows.
+    fn says(&self, rows: &[Row]) -> String;
     /// What its rows come to, one sentence each, beyond what chart and table show.
     fn findings(&self, _rows: &[Row]) -> Vec<String> {
         Vec::new()

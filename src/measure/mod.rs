@@ -11,10 +11,11 @@ pub mod experiment;
 pub mod experiments;
 mod front;
 pub mod metrics;
+mod overview;
 pub mod page;
 pub mod run;
 mod stage;
 
-pub use experiment::{Case, ChartKind, Experiment, MeasureError, Setup};
+pub use experiment::{Case, ChartKind, Entry, Experiment, MeasureError, Setup};
 pub use experiments::{EXPERIMENTS, find};
 pub use run::{Report, Row, run};

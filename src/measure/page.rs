@@ -11,6 +11,7 @@ use serde_json::{Map, Value as Json, json};
 use super::chart;
 use super::experiment::{ChartKind, MeasureError};
 use super::metrics::Metrics;
+use super::overview;
 use super::run::{Report, Row, quantile};
 use crate::scene::{Image, Pixels, write_whole};
 
@@ -44,11 +45,28 @@ pub fn write(report: &Report, folder: &Path) -> Result<PathBuf, PageError> {
     write("index.html", &page(report, &chart))
 }
 
-/// Writes `folder/index.html` with links to experiments.
+/// Writes what all experiments have in common: `folder/index.html` with links to their pages, and `folder/accuracy.md`
+/// with their charts, which lie in `folder/accuracy/`. Returns the path of the former.
 ///
 /// # Errors
-/// [`PageError::File`].
-pub fn write_index(reports: &[Report], folder: &Path) -> Result<PathBuf, PageError> {
+/// [`PageError`].
+pub fn write_overview(reports: &[Report], folder: &Path) -> Result<PathBuf, PageError> {
+    let write = |path: PathBuf, text: &str| {
+        let written = write_whole(&path, |file| file.write_all(text.as_bytes()));
+        written.map(|()| path.clone()).map_err(|error| PageError::File(path, error))
+    };
+    let charts = folder.join("accuracy");
+    std::fs::create_dir_all(&charts).map_err(|error| PageError::File(charts.clone(), error))?;
+    for report in reports {
+        let chart = chart::svg(report).map_err(PageError::Chart)?;
+        write(charts.join(format!("{}.svg", report.name)), &chart)?;
+    }
+    write(folder.join("accuracy.md"), &overview::markdown(reports))?;
+    write(folder.join("index.html"), &index(reports))
+}
+
+/// The page with links to experiments.
+fn index(reports: &[Report]) -> String {
     let mut page = head("restyle measure");
     page.push_str("<h1>restyle measure</h1>\n<table class=\"rows\">\n<tr><th>experiment</th><th>what it finds out</th><th>best and worst</th></tr>\n");
     for report in reports {
@@ -61,11 +79,7 @@ pub fn write_index(reports: &[Report], folder: &Path) -> Result<PathBuf, PageErr
         );
     }
     page.push_str("</table>\n</html>\n");
-    let path = folder.join("index.html");
-    match write_whole(&path, |file| file.write_all(page.as_bytes())) {
-        Ok(()) => Ok(path),
-        Err(error) => Err(PageError::File(path, error)),
-    }
+    page
 }
 
 /// The figures for tools.
@@ -83,6 +97,7 @@ pub fn document(report: &Report) -> Json {
         "noise": report.noise(),
         "seconds": report.seconds,
         "conditions": report.conditions,
+        "says": report.says,
         "findings": report.findings,
         "rows": report.rows.iter().map(row).collect::<Vec<_>>(),
     })
@@ -92,15 +107,16 @@ fn row(row: &Row) -> Json {
     let [median, min, max] = [0.5, 0.0, 1.0].map(|share| quantile(&row.frame_ms, share));
     let passes: Map<String, Json> = row.pass_ms.iter().map(|(name, ms)| ((*name).to_owned(), json!(ms))).collect();
     json!({
-        "scene": row.scene,
-        "method": row.method,
-        "settings": row.settings,
-        "published": row.is_published,
-        "size": row.size,
+        "scene": row.entry.scene,
+        "method": row.entry.method,
+        "settings": row.entry.settings,
+        "published": row.entry.is_published,
+        "size": row.entry.size,
         "ms": { "median": median, "min": min, "max": max },
         "passes": passes,
         "bytes": row.bytes,
         "error": row.error.as_ref().map(error),
+        "figures": row.figures.iter().map(|(name, value)| ((*name).to_owned(), json!(value))).collect::<Map<_, _>>(),
     })
 }
 
@@ -126,9 +142,9 @@ pub fn short(value: f64) -> String {
 
 /// A row as people call it: scene and settings.
 fn called(row: &Row) -> String {
-    let settings: Vec<String> = row.settings.iter().map(|(name, value)| setting(name, value)).collect();
-    let method = if row.method == "gpu" { String::new() } else { format!("{}, ", row.method) };
-    format!("{}, {method}{}", row.scene, settings.join(", "))
+    let settings: Vec<String> = row.entry.settings.iter().map(|(name, value)| setting(name, value)).collect();
+    let method = if row.entry.method == "gpu" { String::new() } else { format!("{}, ", row.entry.method) };
+    format!("{}, {method}{}", row.entry.scene, settings.join(", "))
 }
 
 fn setting(name: &str, value: &Json) -> String {
@@ -142,7 +158,7 @@ fn setting(name: &str, value: &Json) -> String {
 /// The least and the largest figure of the chart's vertical axis, with what has them.
 pub fn best_and_worst(report: &Report) -> String {
     let value = |row: &Row| match report.chart {
-        ChartKind::CostAgainstError { error, .. } => row.error.as_ref().map(|metrics| error.of(metrics)),
+        ChartKind::CostAgainstError { error, .. } => error.of(row),
         ChartKind::TimeByExtent { .. } => Some(row.median_ms()).filter(|ms| ms.is_finite()),
     };
     let (unit, nothing) = match report.chart {
@@ -164,31 +180,42 @@ fn head(title: &str) -> String {
     )
 }
 
+/// Sizes of pictures in pixels, in words.
+pub(super) fn resolution(report: &Report) -> String {
+    let sizes: Vec<String> = report.sizes().iter().map(|[width, height]| format!("{width}x{height}")).collect();
+    sizes.join(", ")
+}
+
+/// How much times differ from round to round, in words.
+pub(super) fn noise(report: &Report) -> String {
+    report.noise().map_or("one round tells none".to_owned(), |noise| {
+        format!("the slowest round took {} % longer than the fastest", short(noise * 100.0))
+    })
+}
+
+/// How many rounds there were, in words.
+pub(super) fn rounds(report: &Report) -> String {
+    let rounds = format!("{} of {}", report.rounds, report.rounds_due);
+    let is_short = report.rounds < report.rounds_due && !report.is_partial;
+    if is_short { format!("{rounds}, which is what the time allows") } else { rounds }
+}
+
 fn page(report: &Report, chart: &str) -> String {
     let mut page = head(&format!("restyle measure {}", report.name));
     let _ = writeln!(page, "<h1>{}</h1>\n<p class=\"doc\">{}</p>", escaped(report.name), escaped(report.doc));
     if report.is_partial {
         page.push_str("<p class=\"partial\">Partial: the run was broken off before all was measured.</p>\n");
     }
-    let sizes: Vec<String> = report.sizes().iter().map(|[width, height]| format!("{width}x{height}")).collect();
     let adapter = report.adapter.as_deref().unwrap_or("none: evaluated on the CPU");
     let driver = report.driver.as_deref().unwrap_or("none");
-    let noise = report.noise().map_or("one round tells none".to_owned(), |noise| {
-        format!("the slowest round took {} % longer than the fastest", short(noise * 100.0))
-    });
-    let rounds = if report.rounds < report.rounds_due && !report.is_partial {
-        format!("{} of {}, which is what the time allows", report.rounds, report.rounds_due)
-    } else {
-        format!("{} of {}", report.rounds, report.rounds_due)
-    };
     page.push_str("<dl>\n");
     for (name, value) in [
         ("adapter", adapter.to_owned()),
         ("driver", driver.to_owned()),
-        ("resolution", sizes.join(", ")),
+        ("resolution", resolution(report)),
         ("date", report.date.clone()),
-        ("rounds", rounds),
-        ("noise", noise),
+        ("rounds", rounds(report)),
+        ("noise", noise(report)),
         ("result", best_and_worst(report)),
     ] {
         let _ = writeln!(page, "<div><dt>{name}</dt><dd>{}</dd></div>", escaped(&value));
@@ -197,7 +224,7 @@ fn page(report: &Report, chart: &str) -> String {
     for paragraph in &report.conditions {
         let _ = writeln!(page, "<p>{}</p>", escaped(paragraph));
     }
-    let _ = writeln!(page, "<figure class=\"chart\">{chart}</figure>");
+    let _ = writeln!(page, "<figure class=\"chart\">{chart}</figure>\n<p class=\"doc\">{}</p>", escaped(&report.says));
     if !report.findings.is_empty() {
         page.push_str("<ul>\n");
         for finding in &report.findings {
@@ -215,20 +242,26 @@ fn table(page: &mut String, report: &Report) {
     let has_errors = report.rows.iter().any(|row| row.error.is_some());
     let per_pixel = matches!(report.chart, ChartKind::CostAgainstError { per_pixel: true, .. });
     page.push_str("<table class=\"rows\">\n<thead><tr><th>scene</th><th>method</th><th>settings</th><th>ms, median</th><th>min</th><th>max</th>");
-    page.push_str(if per_pixel { "<th>ns per pixel</th>" } else { "<th>passes, ms</th><th>targets, MiB</th>" });
+    page.push_str(if per_pixel { "<th>ns per pixel</th>" } else { "<th>passes, ms</th><th>memory, MiB</th>" });
     if has_errors {
         page.push_str("<th>FLIP</th><th>RMSE</th><th>max</th><th>PSNR, dB</th><th>SSIM</th>");
     }
+    // Every row of an experiment is judged alike.
+    let judged = report.rows.iter().map(|row| &row.figures).find(|figures| !figures.is_empty());
+    let names: Vec<&str> = judged.into_iter().flatten().map(|(name, _)| *name).collect();
+    for name in &names {
+        let _ = write!(page, "<th>{}</th>", escaped(name));
+    }
     page.push_str("</tr></thead>\n<tbody>\n");
     for row in &report.rows {
-        let settings: Vec<String> = row.settings.iter().map(|(name, value)| setting(name, value)).collect();
+        let settings: Vec<String> = row.entry.settings.iter().map(|(name, value)| setting(name, value)).collect();
         let [median, min, max] = [0.5, 0.0, 1.0].map(|share| short(quantile(&row.frame_ms, share)));
-        let published = if row.is_published { " (published)" } else { "" };
+        let published = if row.entry.is_published { " (published)" } else { "" };
         let _ = write!(
             page,
             "<tr><td>{}</td><td>{}{published}</td><td>{}</td><td>{median}</td><td>{min}</td><td>{max}</td>",
-            escaped(&row.scene),
-            escaped(&row.method),
+            escaped(&row.entry.scene),
+            escaped(&row.entry.method),
             escaped(&settings.join(", "))
         );
         if per_pixel {
@@ -252,6 +285,9 @@ fn table(page: &mut String, report: &Report) {
                 None => page.push_str("<td colspan=\"5\">not reached</td>"),
             }
         }
+        for name in &names {
+            let _ = write!(page, "<td>{}</td>", row.figure(name).map_or("-".to_owned(), short));
+        }
         page.push_str("</tr>\n");
     }
     page.push_str("</tbody>\n</table>\n");
@@ -270,16 +306,16 @@ fn pictures(page: &mut String, report: &Report) {
     let mut start = 0;
     while let Some((first, truth)) = rows.get(start) {
         let count = rows[start..].iter().take_while(|(_, other)| Rc::ptr_eq(truth, other)).count();
-        let title = match first.settings.get("look") {
-            Some(look) => format!("{}, {}", first.scene, setting("look", look)),
-            None => first.scene.clone(),
+        let title = match first.entry.settings.get("look") {
+            Some(look) => format!("{}, {}", first.entry.scene, setting("look", look)),
+            None => first.entry.scene.clone(),
         };
         let _ = writeln!(page, "<section><h3>{}</h3><div class=\"strip\">", escaped(&title));
         picture(page, truth, "truth");
         for (row, _) in &rows[start..start + count] {
-            let settings = row.settings.iter().filter(|(name, _)| *name != "look");
+            let settings = row.entry.settings.iter().filter(|(name, _)| *name != "look");
             let settings: Vec<String> = settings.map(|(name, value)| setting(name, value)).collect();
-            let method = if row.method == "gpu" { String::new() } else { format!("{}, ", row.method) };
+            let method = if row.entry.method == "gpu" { String::new() } else { format!("{}, ", row.entry.method) };
             let caption = format!("{method}{}", settings.join(", "));
             if let (Some(image), Some(difference), Some(error)) = (&row.picture, &row.difference, &row.error) {
                 picture(page, image, &caption);

@@ -4,10 +4,8 @@ use std::ops::ControlFlow;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-use serde_json::{Map, Value as Json};
-
 use super::date;
-use super::experiment::{Case, ChartKind, Experiment, GoOn, MeasureError, Setup};
+use super::experiment::{Case, ChartKind, Entry, Experiment, Figure, GoOn, MeasureError, Setup};
 use super::metrics::{self, Metrics, Options};
 use crate::scene::Image;
 
@@ -21,30 +19,18 @@ const BUDGET: Duration = Duration::from_secs(165);
 /// One method with its settings on one scene, measured.
 #[derive(Debug, Clone)]
 pub struct Row {
-    /// What was drawn.
-    pub scene: String,
-    /// What drew it.
-    pub method: String,
-    /// With which settings.
-    pub settings: Map<String, Json>,
-    /// See [`Case::series`].
-    pub series: String,
-    /// See [`Case::point`].
-    pub point: String,
-    /// See [`Case::extent`].
-    pub extent: f64,
-    /// See [`Case::is_published`].
-    pub is_published: bool,
-    /// Width and height in pixels.
-    pub size: [u32; 2],
+    /// What it stands for.
+    pub entry: Entry,
     /// Milliseconds of a frame in each round.
     pub frame_ms: Vec<f64>,
     /// Milliseconds of each pass of one frame.
     pub pass_ms: Vec<(&'static str, f64)>,
-    /// Bytes of the targets.
+    /// Bytes of objects and targets on the device.
     pub bytes: u64,
     /// How far the picture is from the truth; none where there is no truth, or it was not reached.
     pub error: Option<Metrics>,
+    /// What else the picture shows beside the truth.
+    pub figures: Vec<Figure>,
     /// The picture, where there is a truth.
     pub picture: Option<Rc<Image>>,
     /// What it should look like.
@@ -56,22 +42,21 @@ pub struct Row {
 impl Row {
     fn new(case: &Case) -> Row {
         Row {
-            scene: case.scene.clone(),
-            method: case.method.clone(),
-            settings: case.settings.clone(),
-            series: case.series.clone(),
-            point: case.point.clone(),
-            extent: case.extent,
-            is_published: case.is_published,
-            size: case.size,
+            entry: case.entry.clone(),
             frame_ms: Vec::new(),
             pass_ms: Vec::new(),
             bytes: 0,
             error: None,
+            figures: Vec::new(),
             picture: None,
             truth: None,
             difference: None,
         }
+    }
+
+    /// A figure by its name.
+    pub fn figure(&self, name: &str) -> Option<f64> {
+        self.figures.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
     }
 
     /// Median milliseconds of a frame.
@@ -81,7 +66,7 @@ impl Row {
 
     /// Median nanoseconds of a pixel of a frame.
     pub fn median_ns_per_pixel(&self) -> f64 {
-        let pixels = f64::from(self.size[0]) * f64::from(self.size[1]);
+        let pixels = f64::from(self.entry.size[0]) * f64::from(self.entry.size[1]);
         self.median_ms() * 1e6 / pixels
     }
 }
@@ -97,6 +82,8 @@ pub struct Report {
     pub chart: ChartKind,
     /// How the numbers come about.
     pub conditions: Vec<String>,
+    /// What the chart says.
+    pub says: String,
     /// What the rows come to.
     pub findings: Vec<String>,
     /// The adapter; none where nothing was drawn by one.
@@ -130,7 +117,7 @@ impl Report {
 
     /// Sizes of pictures, each once.
     pub fn sizes(&self) -> Vec<[u32; 2]> {
-        let mut sizes: Vec<[u32; 2]> = self.rows.iter().map(|row| row.size).collect();
+        let mut sizes: Vec<[u32; 2]> = self.rows.iter().map(|row| row.entry.size).collect();
         sizes.sort_unstable();
         sizes.dedup();
         sizes
@@ -145,6 +132,12 @@ pub fn quantile(values: &[f64], share: f64) -> f64 {
     let at = share.clamp(0.0, 1.0) * last as f64;
     let (below, above) = (sorted[at.floor() as usize], sorted[at.ceil() as usize]);
     below + (above - below) * at.fract()
+}
+
+/// The geometric mean; NaN of nothing.
+pub fn geometric_mean(values: impl IntoIterator<Item = f64>) -> f64 {
+    let (sum, count) = values.into_iter().fold((0.0, 0usize), |(sum, count), value| (sum + value.ln(), count + 1));
+    (sum / count as f64).exp()
 }
 
 /// How many rounds there are, and until when one may begin.
@@ -203,6 +196,7 @@ pub fn run(
         doc: experiment.doc(),
         chart: experiment.chart(),
         conditions: experiment.conditions(setup),
+        says: experiment.says(&rows),
         findings: experiment.findings(&rows),
         adapter: info.map(|info| info.name.clone()),
         driver: info.map(|info| format!("{} {}", info.driver, info.driver_info).trim().to_owned()),
@@ -260,6 +254,7 @@ fn judge(cases: &[Case], rows: &mut [Row], step: &mut dyn FnMut(), go_on: GoOn<'
                 row.error = Some(comparison.metrics);
                 row.difference = Some(Rc::new(comparison.flip_image()));
             }
+            row.figures = case.judge.as_ref().map_or_else(Vec::new, |judge| judge(&truth, picture));
             row.truth = Some(truth);
         }
         step();

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::experiment::{MeasureError, Subject, Truth};
 use crate::config::{self, Catalog, Source, Style};
 use crate::engine::exact::Exact;
-use crate::engine::{self, Engine, Gpu, GpuError, Request};
+use crate::engine::{self, Engine, Gpu, GpuError, Request, ShadowQuality};
 use crate::scene::{Image, Scene};
 use crate::shipped::{self, SCENES, Shipped};
 
@@ -24,27 +24,49 @@ pub fn scene(file: &str, bytes: &[u8]) -> Result<Scene, MeasureError> {
     Scene::from_bytes(file, bytes).map_err(|error| MeasureError::Content(error.to_string()))
 }
 
-/// A shipped look.
-pub fn look(look: &Shipped) -> Result<Style, MeasureError> {
-    style(look.file, look.bytes)
+/// A style with its name, by which a stage knows whether it shows it already.
+#[derive(Clone)]
+pub struct Look {
+    name: Rc<str>,
+    style: Rc<Style>,
 }
 
-/// A style of a file in memory.
-pub fn style(file: &str, bytes: &[u8]) -> Result<Style, MeasureError> {
-    let entries = engine::catalog();
-    let catalog = Catalog { shaders: &entries, kinds: engine::DRAWN_KINDS };
-    config::load(&Source::new(file, bytes), &catalog).map_err(|mistakes| MeasureError::Content(mistakes.to_string()))
-}
+impl Look {
+    /// The style of a text.
+    pub fn of_text(name: &str, text: &str) -> Result<Look, MeasureError> {
+        Look::of_file(name, &format!("{name}.json"), text.as_bytes())
+    }
 
-/// The same style without post effects.
-pub fn without_effects(mut style: Style) -> Style {
-    style.post_effects.clear();
-    style.listed_effects.clear();
-    style
+    /// A shipped look.
+    pub fn shipped(look: &Shipped) -> Result<Look, MeasureError> {
+        Look::of_file(look.name, look.file, look.bytes)
+    }
+
+    fn of_file(name: &str, file: &str, bytes: &[u8]) -> Result<Look, MeasureError> {
+        let entries = engine::catalog();
+        let catalog = Catalog { shaders: &entries, kinds: engine::DRAWN_KINDS };
+        let style = config::load(&Source::new(file, bytes), &catalog);
+        let style = style.map_err(|mistakes| MeasureError::Content(mistakes.to_string()))?;
+        Ok(Look { name: Rc::from(name), style: Rc::new(style) })
+    }
+
+    /// The same style without post effects.
+    pub fn without_effects(&self) -> Look {
+        let mut style = Style::clone(&self.style);
+        style.post_effects.clear();
+        style.listed_effects.clear();
+        Look { name: Rc::from(format!("{} without effects", self.name)), style: Rc::new(style) }
+    }
+
+    /// What the reference renderer makes of a scene in it.
+    pub fn exact(&self, scene: &Scene, request: Request) -> Rc<Truth> {
+        let exact = Exact::new(scene.clone(), Style::clone(&self.style), None);
+        Truth::new(move |go_on| exact.still(&request, &mut |_| go_on()).map_err(|_| MeasureError::Interrupted))
+    }
 }
 
 /// What of a stage its engine shows.
-type Shown = (Rc<str>, Request);
+type Shown = (Rc<str>, Request, ShadowQuality);
 
 /// A scene on the device, which cases show in styles and sizes of theirs.
 pub struct Stage {
@@ -59,6 +81,12 @@ impl Stage {
     pub fn new(gpu: &Arc<Gpu>, scene: Scene) -> Rc<Stage> {
         Rc::new(Stage { engine: RefCell::new(None), shown: RefCell::new(None), gpu: Arc::clone(gpu), scene })
     }
+
+    /// The scene in a style, as a frame that is measured.
+    pub fn frame(self: &Rc<Stage>, look: &Look, request: Request) -> GpuFrame {
+        let shadows = ShadowQuality::default();
+        GpuFrame { stage: Rc::clone(self), look: look.clone(), request, shadows }
+    }
 }
 
 /// The device of a setup.
@@ -70,12 +98,12 @@ pub fn device(gpu: Option<&Arc<Gpu>>) -> Result<&Arc<Gpu>, MeasureError> {
 pub struct GpuFrame {
     /// The scene.
     pub stage: Rc<Stage>,
-    /// What the style is called.
-    pub style_name: Rc<str>,
     /// The style.
-    pub style: Rc<Style>,
+    pub look: Look,
     /// The size and the samples.
     pub request: Request,
+    /// How fine shadows are.
+    pub shadows: ShadowQuality,
 }
 
 impl GpuFrame {
@@ -83,12 +111,13 @@ impl GpuFrame {
     fn warm<T>(&self, draw: impl FnOnce(&mut Engine) -> Result<T, GpuError>) -> Result<T, MeasureError> {
         let mut engine = self.stage.engine.borrow_mut();
         let mut shown = self.stage.shown.borrow_mut();
-        let style = || Style::clone(&self.style);
+        let style = || Style::clone(&self.look.style);
         let engine =
             engine.get_or_insert_with(|| Engine::new(Arc::clone(&self.stage.gpu), self.stage.scene.clone(), style()));
-        let wanted = (Rc::clone(&self.style_name), self.request);
+        let wanted = (Rc::clone(&self.look.name), self.request, self.shadows);
         if shown.as_ref() != Some(&wanted) {
             engine.set_style(style());
+            engine.set_shadow_quality(self.shadows);
             engine.draw(&self.request, false, &mut |_| ControlFlow::Continue(()))?;
             *shown = Some(wanted);
         }
@@ -110,16 +139,11 @@ impl Subject for GpuFrame {
 
     fn bytes(&self) -> u64 {
         let engine = self.stage.engine.borrow();
-        engine.as_ref().map_or(0, |engine| engine.target_bytes().iter().map(|(_, bytes)| bytes).sum())
+        let targets = |engine: &Engine| engine.target_bytes().iter().map(|(_, bytes)| bytes).sum::<u64>();
+        engine.as_ref().map_or(0, |engine| engine.object_bytes() + targets(engine))
     }
 
     fn picture(&mut self) -> Result<Image, MeasureError> {
         self.warm(|engine| engine.still(&self.request))
     }
-}
-
-/// The truth of a scene in a style: exact ray casts.
-pub fn exact(scene: Scene, style: Style, request: Request) -> Rc<Truth> {
-    let exact = Exact::new(scene, style, None);
-    Truth::new(move |go_on| exact.still(&request, &mut |_| go_on()).map_err(|_| MeasureError::Interrupted))
 }

@@ -8,8 +8,8 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{AddressSpace, Handle, Type, TypeInner};
 use restyle::effects::EFFECTS;
 use restyle::frame::{
-    EffectKey, Finish, ShadeKey, ShaderNeeds, VisibilityKey, aov_module, effect_module, mesh_module, resolve_module,
-    shade_module, visibility_module,
+    EffectKey, Finish, ShadeKey, ShaderNeeds, ShadowFilter, VisibilityKey, aov_module, effect_module, mesh_module,
+    resolve_module, shade_module, visibility_module,
 };
 use restyle::gpu::Module;
 use restyle::shading::SHADERS;
@@ -148,7 +148,7 @@ fn collect(parsed: &naga::Module, ty: Handle<Type>, into: &mut BTreeSet<Handle<T
 }
 
 /// How many yes-or-no questions a [`ShadeKey`] answers, beside its list of shaders.
-const NUM_SWITCHES: u32 = 16;
+const NUM_SWITCHES: u32 = 17;
 
 /// Answers, one a bit, of which at most one differs from the rest.
 fn covering_switches() -> impl Iterator<Item = u32> {
@@ -205,6 +205,7 @@ fn shade_key(shaders: u32, switches: u32, features: u32) -> ShadeKey {
         encode: on(8),
         soft_taps: if on(12) { 16 } else { 0 },
         geometry: on(15),
+        shadow_filter: if on(16) { ShadowFilter::Depth } else { ShadowFilter::Objects },
         orthographic: on(11),
     }
 }

@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec2, DVec3};
 use restyle::config::{self, Catalog, Source};
 use restyle::engine::{self, Engine};
+use restyle::measure::metrics::share_near;
 use restyle::scene::{Scene, unpack_normal};
 
 use super::gpu;
@@ -251,18 +252,6 @@ impl Truth {
     }
 }
 
-/// Share of the pixels of `of` that have one of `among` within a pixel; 1 where `of` is empty.
-fn share_near(of: &[bool], among: &[bool]) -> f64 {
-    let at = |x: i64, y: i64| {
-        let inside = (0..i64::from(SIZE[0])).contains(&x) && (0..i64::from(SIZE[1])).contains(&y);
-        inside && among[y as usize * SIZE[0] as usize + x as usize]
-    };
-    let chosen: Vec<_> = gpu::pixels(SIZE).zip(of).filter(|(_, is)| **is).map(|(pixel, _)| pixel).collect();
-    let is_near =
-        |&&(x, y): &&(u32, u32)| (-1..=1).any(|dy| (-1..=1).any(|dx| at(i64::from(x) + dx, i64::from(y) + dy)));
-    if chosen.is_empty() { 1.0 } else { chosen.iter().filter(is_near).count() as f64 / chosen.len() as f64 }
-}
-
 /// Draws lines of some kinds in red, and compares them with the truth: precision and recall.
 fn compared(model: &Model, camera: &str, kinds: &[usize], width: f64, truth: &mut Option<Truth>) -> Option<(f64, f64)> {
     let mut widths = [0.0; 3];
@@ -284,7 +273,7 @@ fn compared(model: &Model, camera: &str, kinds: &[usize], width: f64, truth: &mu
     let truth = mask(&engine, truth, kinds, width);
     let light = gpu::channel(&gpu::still(&mut engine, SIZE, 1), 0);
     let drawn: Vec<bool> = light.iter().map(|share| *share > 0.5).collect();
-    Some((share_near(&drawn, &truth), share_near(&truth, &drawn)))
+    Some((share_near(&drawn, &truth, SIZE[0] as usize), share_near(&truth, &drawn, SIZE[0] as usize)))
 }
 
 const CAMERAS: [&str; 2] = [r#""orthographic": true"#, r#""fov": 40"#];

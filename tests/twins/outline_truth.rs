@@ -4,6 +4,7 @@ use super::gpu;
 use super::outline::{Geometry, Rig, random_atoms};
 use super::truth::center_px;
 use glam::{DVec2, DVec3};
+use restyle::measure::metrics::share_near;
 
 const SIZE: [u32; 2] = [160, 120];
 /// Lines of sight along which the truth looks for edges, a pixel.
@@ -108,18 +109,6 @@ fn line_mask(rig: &Rig, contours: &[Contour], width: f64, step: f64) -> Vec<bool
     gpu::pixels(SIZE).map(covered).collect()
 }
 
-/// Share of the pixels of `of` that have one of `among` within a pixel.
-fn share_near(of: &[bool], among: &[bool]) -> f64 {
-    let at = |x: i64, y: i64| {
-        let inside = (0..i64::from(SIZE[0])).contains(&x) && (0..i64::from(SIZE[1])).contains(&y);
-        inside && among[y as usize * SIZE[0] as usize + x as usize]
-    };
-    let chosen: Vec<_> = gpu::pixels(SIZE).zip(of).filter(|(_, is)| **is).map(|(pixel, _)| pixel).collect();
-    let near =
-        chosen.iter().filter(|(x, y)| (-1..=1).any(|dy| (-1..=1).any(|dx| at(i64::from(*x) + dx, i64::from(*y) + dy))));
-    near.count() as f64 / chosen.len().max(1) as f64
-}
-
 /// Precision and recall of pixels of lines, within a pixel.
 const ACCEPTED: f64 = 0.98;
 
@@ -142,7 +131,8 @@ fn lines_lie_where_contours_are() {
             let Some(mut rig) = Rig::new(&atoms, SIZE, radius, camera, &silhouettes(width, step)) else { return };
             let truth = line_mask(&rig, &contours, width, step);
             let drawn: Vec<bool> = lines(&mut rig, 1).iter().map(|share| *share > 0.5).collect();
-            let (precision, recall) = (share_near(&drawn, &truth), share_near(&truth, &drawn));
+            let (precision, recall) =
+                (share_near(&drawn, &truth, SIZE[0] as usize), share_near(&truth, &drawn, SIZE[0] as usize));
             eprintln!("{name}, {camera}, {width} px: precision {precision:.4}, recall {recall:.4}");
             assert!(precision >= ACCEPTED && recall >= ACCEPTED, "{name}, {camera}, {width} px: {precision} {recall}");
         }

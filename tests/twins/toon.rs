@@ -35,11 +35,11 @@ pub fn toon_level(cosine: f32, gradient: f32, m: &ToonMaterial) -> f32 {
         return m.top.min(1.0);
     }
     let reach = m.scale + m.bias;
-    let share = (m.scale * cosine + m.bias).max(0.0) / reach;
+    let share = (m.scale * cosine + m.bias) / reach;
     let mut x = m.steps * share;
     let mut slope = m.steps * m.scale / reach;
     if m.exponent != 1.0 {
-        x = m.steps * share.powf(m.exponent);
+        x = m.steps * share.max(0.0).powf(m.exponent);
         slope = x * m.exponent * m.scale / (share * reach).max(1e-6);
     }
     let k = band_mean(x, (slope * gradient).min(m.steps), m.steps);
@@ -163,6 +163,14 @@ fn the_light_pole_has_the_level_of_its_band() {
     let m = material((0.5, 0.5, 2.0, 4.0));
     assert_eq!(toon_level(1.0, 1e-6, &m), toon_level(0.99, 1e-6, &m));
     assert_eq!(toon_level(1.0, 1e-6, &m), 0.75);
+}
+
+#[test]
+fn what_is_turned_from_the_light_is_dark_however_fine_the_bands_are() {
+    let m = material((1.0, 0.0, 1.0, 256.0));
+    // Ten bands a pixel: half of the pixel on the terminator is lit, and no pixel beyond it.
+    let [on, beyond, far] = [0.0, -0.02, -1.0].map(|cosine| toon_level(cosine, 10.0 / 256.0, &m));
+    assert!((on - 0.5 * 2.0 / 256.0).abs() < 1e-6 && beyond == 0.0 && far == 0.0, "{on} {beyond} {far}");
 }
 
 #[test]

@@ -7,14 +7,15 @@ use glam::{DVec3, Vec3};
 use serde_json::json;
 
 use crate::engine::Request;
-use crate::measure::experiment::{Case, ChartKind, ErrorKind, Experiment, MeasureError, Setup};
+use crate::measure::experiment::{Case, ChartKind, Entry, ErrorKind, Experiment, MeasureError, Setup};
 use crate::measure::page::short;
-use crate::measure::run::Row;
-use crate::measure::stage::{GpuFrame, Stage, device, exact, scene, style};
+use crate::measure::run::{Row, geometric_mean};
+use crate::measure::stage::{Look, Stage, device, scene};
 use crate::scene::Scene;
 
-/// Subdivisions of an icosahedron: 80, 320, 1280 and 5120 triangles.
+/// Subdivisions of an icosahedron, and the triangles that they come to.
 const LEVELS: [u32; 4] = [1, 2, 3, 4];
+const TRIANGLES: [usize; 4] = [80, 320, 1280, 5120];
 /// Spheres of the scenes: with 5120 triangles each, half a million and two.
 const COUNTS: [usize; 2] = [20, 97];
 const COUNTS_THOROUGH: [usize; 3] = [20, 97, 390];
@@ -123,6 +124,17 @@ fn tessellated(atoms: &Scene, level: u32) -> Result<Scene, MeasureError> {
     scene("spheres.obj", text.as_bytes())
 }
 
+fn rmse(row: &Row) -> f64 {
+    row.error.as_ref().map_or(f64::NAN, |error| error.display.rmse.all)
+}
+
+/// Whether triangles take less time than the impostors of the same spheres.
+fn is_quicker(row: &Row, rows: &[Row]) -> bool {
+    let is_same = |other: &&Row| other.entry.scene == row.entry.scene && other.entry.size == row.entry.size;
+    let impostors = rows.iter().filter(is_same).find(|other| other.entry.method == IMPOSTORS);
+    impostors.is_some_and(|impostors| row.median_ms() < impostors.median_ms())
+}
+
 impl Experiment for Geometry {
     fn name(&self) -> &'static str {
         "geometry"
@@ -133,7 +145,7 @@ impl Experiment for Geometry {
     }
 
     fn chart(&self) -> ChartKind {
-        ChartKind::CostAgainstError { error: ErrorKind::Rmse, per_pixel: false }
+        ChartKind::CostAgainstError { error: ErrorKind::Rmse, per_pixel: false, has_front: true }
     }
 
     fn conditions(&self, _: &Setup) -> Vec<String> {
@@ -142,38 +154,76 @@ impl Experiment for Geometry {
                 "Spheres stand apart in one flat colour, so that errors are those of silhouettes. Pictures and times are of \
                  {SAMPLES} samples a pixel; the truth is the reference renderer's exact spheres with {TRUTH_SAMPLES}."
             ),
-            "Triangles are of subdivided icosahedra with their vertices on the sphere; at most two million a row. Bytes are \
-             those of the targets; vertices and triangles come on top."
+            "Triangles are of subdivided icosahedra with their vertices on the sphere; at most two million a row."
                 .to_owned(),
             "In the chart, a large point is the geometric mean over the numbers of spheres, which are the small points."
                 .to_owned(),
         ]
     }
 
+    fn says(&self, rows: &[Row]) -> String {
+        let [impostors, coarse, fine] = [0.0, TRIANGLES[0] as f64, TRIANGLES[3] as f64].map(|triangles| {
+            let rows = rows.iter().filter(move |row| row.entry.extent == triangles);
+            [
+                geometric_mean(rows.clone().map(Row::median_ms)),
+                geometric_mean(rows.clone().map(rmse)),
+                geometric_mean(rows.map(|row| row.bytes as f64)),
+            ]
+        });
+        let mut quicker: Vec<&Row> = rows.iter().filter(|row| is_quicker(row, rows)).collect();
+        quicker.sort_by(|a, b| a.entry.extent.total_cmp(&b.entry.extent));
+        let crossover = match quicker.last() {
+            Some(row) => format!(
+                "Triangles are quicker in {} of {} cases, at the most {} for {} at {}x{}",
+                quicker.len(),
+                rows.iter().filter(|row| row.entry.extent > 0.0).count(),
+                row.entry.method,
+                row.entry.scene,
+                row.entry.size[0],
+                row.entry.size[1]
+            ),
+            None => "There is no crossover on this adapter: no tessellation is quicker in any case".to_owned(),
+        };
+        format!(
+            "{crossover}; {} triangles a sphere take {} times the time of impostors, with {} times their error. {} triangles come to \
+             {} times their error, for {} times the time and {} times the memory.",
+            TRIANGLES[0],
+            short(coarse[0] / impostors[0]),
+            short(coarse[1] / impostors[1]),
+            TRIANGLES[3],
+            short(fine[1] / impostors[1]),
+            short(fine[0] / impostors[0]),
+            short(fine[2] / impostors[2]),
+        )
+    }
+
     fn findings(&self, rows: &[Row]) -> Vec<String> {
-        let rmse = |row: &Row| row.error.as_ref().map_or(f64::NAN, |error| error.display.rmse.all);
         let mut findings = Vec::new();
-        for impostors in rows.iter().filter(|row| row.method == IMPOSTORS) {
+        for impostors in rows.iter().filter(|row| row.entry.method == IMPOSTORS) {
             let meshes: Vec<&Row> = rows
                 .iter()
-                .filter(|row| row.scene == impostors.scene && row.size == impostors.size && row.method != IMPOSTORS)
+                .filter(|row| {
+                    row.entry.scene == impostors.entry.scene
+                        && row.entry.size == impostors.entry.size
+                        && row.entry.method != IMPOSTORS
+                })
                 .collect();
             let said = |row: &Row| format!("{} ms, RMSE {}", short(row.median_ms()), short(rmse(row)));
-            let quicker = meshes.iter().filter(|row| row.median_ms() < impostors.median_ms());
-            let crossover = match quicker.max_by(|a, b| a.extent.total_cmp(&b.extent)) {
-                Some(row) => format!("spheres of up to {} are quicker ({})", row.method, said(row)),
+            let quicker = meshes.iter().filter(|row| is_quicker(row, rows));
+            let crossover = match quicker.max_by(|a, b| a.entry.extent.total_cmp(&b.entry.extent)) {
+                Some(row) => format!("spheres of up to {} are quicker ({})", row.entry.method, said(row)),
                 None => "no tessellation is quicker".to_owned(),
             };
             let as_good = meshes.iter().find(|row| rmse(row) <= 1.1 * rmse(impostors));
             let as_good = match as_good {
-                Some(row) => format!("as near to the truth are {} ({})", row.method, said(row)),
+                Some(row) => format!("as near to the truth are {} ({})", row.entry.method, said(row)),
                 None => "none is as near to the truth".to_owned(),
             };
             findings.push(format!(
                 "{} at {}x{}: impostors take {}; {crossover}; {as_good}.",
-                impostors.scene,
-                impostors.size[0],
-                impostors.size[1],
+                impostors.entry.scene,
+                impostors.entry.size[0],
+                impostors.entry.size[1],
                 said(impostors)
             ));
         }
@@ -182,19 +232,16 @@ impl Experiment for Geometry {
 
     fn cases(&self, setup: &Setup) -> Result<Vec<Case>, MeasureError> {
         let gpu = device(setup.gpu.as_ref())?;
-        let style = Rc::new(style("spheres.json", STYLE.as_bytes())?);
+        let look = Look::of_text("spheres", STYLE)?;
         let counts: &[usize] = if setup.thorough { &COUNTS_THOROUGH } else { &COUNTS };
         let sizes = setup.size.map_or(SIDES.map(|side| [side; 2]).to_vec(), |size| vec![size]);
         let mut cases = Vec::new();
         for &count in counts {
             let spheres = atoms(count)?;
-            let truths: Vec<_> = sizes
-                .iter()
-                .map(|size| exact(spheres.clone(), (*style).clone(), Request::new(*size, TRUTH_SAMPLES)))
-                .collect();
+            let truths: Vec<_> =
+                sizes.iter().map(|size| look.exact(&spheres, Request::new(*size, TRUTH_SAMPLES))).collect();
             let mut kinds = vec![(IMPOSTORS.to_owned(), 0, Stage::new(gpu, spheres.clone()))];
-            for level in LEVELS {
-                let triangles = 20 * 4usize.pow(level);
+            for (level, triangles) in LEVELS.into_iter().zip(TRIANGLES) {
                 let stage = Stage::new(gpu, tessellated(&spheres, level)?);
                 kinds.push((format!("{triangles} triangles"), triangles, stage));
             }
@@ -202,21 +249,19 @@ impl Experiment for Geometry {
                 for (method, triangles, stage) in &kinds {
                     let settings = json!({ "size": size, "samples": SAMPLES });
                     cases.push(Case {
-                        scene: format!("{count} spheres"),
-                        method: method.clone(),
-                        settings: settings.as_object().cloned().unwrap_or_default(),
-                        series: method.clone(),
-                        point: format!("{}x{}", size[0], size[1]),
-                        extent: *triangles as f64,
-                        is_published: false,
-                        size: *size,
-                        subject: Box::new(GpuFrame {
-                            stage: Rc::clone(stage),
-                            style_name: Rc::from("spheres"),
-                            style: Rc::clone(&style),
-                            request: Request::new(*size, SAMPLES),
-                        }),
+                        entry: Entry {
+                            scene: format!("{count} spheres"),
+                            method: method.clone(),
+                            settings: settings.as_object().cloned().unwrap_or_default(),
+                            series: method.clone(),
+                            point: format!("{}x{}", size[0], size[1]),
+                            extent: *triangles as f64,
+                            is_published: false,
+                            size: *size,
+                        },
+                        subject: Box::new(stage.frame(&look, Request::new(*size, SAMPLES))),
                         truth: Some(Rc::clone(truth)),
+                        judge: None,
                     });
                 }
             }

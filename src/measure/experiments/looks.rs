@@ -1,13 +1,14 @@
 //! `looks`: the time of a frame in every look, by number of atoms and at two sizes [Prost2016 §5.2, Fig. 7].
 
 use std::fmt::Write as _;
-use std::rc::Rc;
 
 use serde_json::json;
 
 use crate::engine::Request;
-use crate::measure::experiment::{Case, ChartKind, Experiment, MeasureError, Setup};
-use crate::measure::stage::{GpuFrame, Stage, device, look, scene, shipped_scene};
+use crate::measure::experiment::{Case, ChartKind, Entry, Experiment, MeasureError, Setup};
+use crate::measure::page::short;
+use crate::measure::run::Row;
+use crate::measure::stage::{Look, Stage, device, scene, shipped_scene};
 use crate::scene::Scene;
 use crate::shipped::LOOKS;
 
@@ -20,6 +21,9 @@ const LATTICES_THOROUGH: [usize; 5] = [1_000, 5_000, 30_000, 100_000, 300_000];
 
 /// Those of the published figure.
 const SIZES: [[u32; 2]; 2] = [[1920, 1080], [1920, 1200]];
+
+/// Scenes of fewer atoms cover too little of a picture to be compared.
+const FEW_ATOMS: f64 = 50.0;
 
 /// The experiment.
 pub struct Looks;
@@ -60,6 +64,38 @@ impl Experiment for Looks {
         ]
     }
 
+    fn says(&self, rows: &[Row]) -> String {
+        let [few, many] = [f64::min, f64::max].map(|choose| {
+            let atoms = rows.iter().map(|row| row.entry.extent).filter(|atoms| *atoms >= FEW_ATOMS);
+            atoms.fold(f64::NAN, choose)
+        });
+        let size = rows.first().map(|row| row.entry.size);
+        let at = |atoms: f64| rows.iter().filter(move |row| row.entry.extent == atoms && Some(row.entry.size) == size);
+        let mut times: Vec<(f64, &str)> = at(few).map(|row| (row.median_ms(), &*row.entry.series)).collect();
+        times.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let growth = |row: &Row| {
+            let small = at(few).find(|small| small.entry.series == row.entry.series)?;
+            Some((row.median_ms() / small.median_ms(), row.entry.series.clone()))
+        };
+        let mut growths: Vec<(f64, String)> = at(many).filter_map(growth).collect();
+        growths.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (Some(quick), Some(slow)) = (times.first(), times.last()) else { return String::new() };
+        let (Some(least), Some(most)) = (growths.first(), growths.last()) else { return String::new() };
+        format!(
+            "{few} atoms take from {} ms ({}) to {} ms ({}), which is mostly what the pixels cost. From there to {many} atoms \
+             times grow by {} ({}) to {} ({}), for {} times the atoms.",
+            short(quick.0),
+            quick.1,
+            short(slow.0),
+            slow.1,
+            short(least.0),
+            least.1,
+            short(most.0),
+            most.1,
+            short(many / few),
+        )
+    }
+
     fn cases(&self, setup: &Setup) -> Result<Vec<Case>, MeasureError> {
         let gpu = device(setup.gpu.as_ref())?;
         let mut scenes = Vec::new();
@@ -77,25 +113,23 @@ impl Experiment for Looks {
             let num_atoms = scene.molecule.atoms.len();
             let stage = Stage::new(gpu, scene);
             for shipped in LOOKS {
-                let (style_name, style) = (Rc::from(shipped.name), Rc::new(look(shipped)?));
+                let look = Look::shipped(shipped)?;
                 for &size in &sizes {
                     let settings = json!({ "look": shipped.name, "atoms": num_atoms, "size": size });
                     cases.push(Case {
-                        scene: name.clone(),
-                        method: "gpu".to_owned(),
-                        settings: settings.as_object().cloned().unwrap_or_default(),
-                        series: shipped.name.to_owned(),
-                        point: format!("{}x{}", size[0], size[1]),
-                        extent: num_atoms as f64,
-                        is_published: false,
-                        size,
-                        subject: Box::new(GpuFrame {
-                            stage: Rc::clone(&stage),
-                            style_name: Rc::clone(&style_name),
-                            style: Rc::clone(&style),
-                            request: Request::new(size, 1),
-                        }),
+                        entry: Entry {
+                            scene: name.clone(),
+                            method: "gpu".to_owned(),
+                            settings: settings.as_object().cloned().unwrap_or_default(),
+                            series: shipped.name.to_owned(),
+                            point: format!("{}x{}", size[0], size[1]),
+                            extent: num_atoms as f64,
+                            is_published: false,
+                            size,
+                        },
+                        subject: Box::new(stage.frame(&look, Request::new(size, 1))),
                         truth: None,
+                        judge: None,
                     });
                 }
             }

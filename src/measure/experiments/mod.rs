@@ -2,14 +2,22 @@
 
 mod geometry;
 mod looks;
+mod outlines;
 mod shading;
+mod shadows;
 mod toon_edges;
 
 use super::experiment::Experiment;
 
 /// All of them, in the order in which they are run.
-pub const EXPERIMENTS: &[&dyn Experiment] =
-    &[&shading::Shading, &looks::Looks, &toon_edges::ToonEdges, &geometry::Geometry];
+pub const EXPERIMENTS: &[&dyn Experiment] = &[
+    &shading::Shading,
+    &looks::Looks,
+    &toon_edges::ToonEdges,
+    &geometry::Geometry,
+    &outlines::Outlines,
+    &shadows::Shadows,
+];
 
 /// The experiment of this name.
 pub fn find(name: &str) -> Option<&'static dyn Experiment> {

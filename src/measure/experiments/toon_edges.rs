@@ -12,7 +12,11 @@ use std::time::Instant;
 use glam::{Vec2, Vec3};
 use serde_json::json;
 
-use crate::measure::experiment::{Case, ChartKind, ErrorKind, Experiment, GoOn, MeasureError, Setup, Subject, Truth};
+use crate::measure::experiment::{
+    Case, ChartKind, Entry, ErrorKind, Experiment, GoOn, MeasureError, Setup, Subject, Truth,
+};
+use crate::measure::page::short;
+use crate::measure::run::{Row, geometric_mean};
 use crate::scene::{Image, Pixels, srgb_from_linear};
 
 /// Bands of light.
@@ -269,7 +273,7 @@ impl Experiment for ToonEdges {
     }
 
     fn chart(&self) -> ChartKind {
-        ChartKind::CostAgainstError { error: ErrorKind::Rmse, per_pixel: true }
+        ChartKind::CostAgainstError { error: ErrorKind::Rmse, per_pixel: true, has_front: true }
     }
 
     fn needs_gpu(&self) -> bool {
@@ -292,6 +296,30 @@ impl Experiment for ToonEdges {
         ]
     }
 
+    fn says(&self, rows: &[Row]) -> String {
+        let of = |kind: usize, samples: f64| {
+            let rows =
+                rows.iter().filter(move |row| row.entry.series == STEP_KINDS[kind].1 && row.entry.extent == samples);
+            let rmse = |row: &Row| row.error.as_ref().map_or(f64::NAN, |error| error.display.rmse.all);
+            [geometric_mean(rows.clone().map(rmse)), geometric_mean(rows.map(Row::median_ns_per_pixel))]
+        };
+        let [[hard, hard_ns], [fwidth, fwidth_ns], [gradient, gradient_ns]] = [0, 1, 2].map(|kind| of(kind, 1.0));
+        let [many, many_ns] = of(0, 16.0);
+        format!(
+            "With one sample the step by the length of the gradient, which `toon` draws, has {} times less error than the published \
+             hard step and {} times less than the smoothstep over `fwidth`, for {} ns a pixel instead of {} and {}, with the surface \
+             found. The hard step with 16 samples has {} times its error and costs {} times as much; `fwidth` blurs over two to \
+             three pixels.",
+            short(hard / gradient),
+            short(fwidth / gradient),
+            short(gradient_ns),
+            short(hard_ns),
+            short(fwidth_ns),
+            short(many / gradient),
+            short(many_ns / gradient_ns),
+        )
+    }
+
     fn cases(&self, setup: &Setup) -> Result<Vec<Case>, MeasureError> {
         let size = setup.size.unwrap_or(SIZE);
         let sides: &[u32] = if setup.thorough { &[1, 2, 4, 8] } else { &[1, 2, 4] };
@@ -306,16 +334,19 @@ impl Experiment for ToonEdges {
                 for &side in sides {
                     let settings = json!({ "samples": side * side, "steps": STEPS as u32 });
                     cases.push(Case {
-                        scene: name.to_owned(),
-                        method: method.to_owned(),
-                        settings: settings.as_object().cloned().unwrap_or_default(),
-                        series: method.to_owned(),
-                        point: (side * side).to_string(),
-                        extent: f64::from(side),
-                        is_published: step == Step::Hard && side == 1,
-                        size,
+                        entry: Entry {
+                            scene: name.to_owned(),
+                            method: method.to_owned(),
+                            settings: settings.as_object().cloned().unwrap_or_default(),
+                            series: method.to_owned(),
+                            point: (side * side).to_string(),
+                            extent: f64::from(side * side),
+                            is_published: step == Step::Hard && side == 1,
+                            size,
+                        },
                         subject: Box::new(Evaluation { sheet: Rc::clone(&sheet), step, side }),
                         truth: Some(Rc::clone(&truth)),
+                        judge: None,
                     });
                 }
             }

@@ -11,6 +11,7 @@
 mod bands;
 mod errors;
 mod flip;
+mod lines;
 mod magma;
 mod mask;
 mod picture;
@@ -20,6 +21,7 @@ mod ssim;
 mod testing;
 
 pub use errors::{Channels, Errors};
+pub use lines::{LineErrors, share_near};
 pub use mask::{MARGIN_PX, Mask, common_background};
 pub use picture::{BLACK, Picture, WHITE};
 pub use sequence::{Sequence, Stability};
