@@ -22,11 +22,17 @@ fn blocks(light_view: View, id: u32, origin: vec3<f32>, toward: vec3<f32>) -> bo
     return span.x <= span.y && span.y > 0.0;
 }
 
-// Share of the light that triangles let through to a point at depth `t`: of the four texels around its place, each
-// weighed by how near it is [Reeves1987].
-fn mesh_light(light_view: View, layer: i32, place_px: vec2<f32>, t: f32, last: vec2<i32>) -> f32 {
-    let base = floor(place_px - 0.5);
-    let share = place_px - 0.5 - base;
+// How far in front of a receiver's plane triangles must lie to shade it, in texels: what lies in a fold is a slope of one.
+const MESH_BIAS_TEXELS: f32 = 1.0;
+// The steepest that a receiver's plane is taken, where the shadow is hard and where it is soft and so looks far beyond it.
+const MESH_SLOPE: f32 = 16.0;
+const SOFT_SLOPE: f32 = 4.0;
+
+// Share of the light that triangles let through: of the four texels around a place, each weighed by how near it is
+// [Reeves1987 §3], and compared with the receiver's plane there [Isidoro2006].
+fn mesh_light(light_view: View, layer: i32, lit: LitPlace, slope: vec2<f32>, last: vec2<i32>) -> f32 {
+    let base = floor(lit.place_px - 0.5);
+    let share = lit.place_px - 0.5 - base;
     var open = 0.0;
     for (var i = 0; i < 4; i++) {
         let corner = vec2<i32>(i & 1, i >> 1);
@@ -34,10 +40,21 @@ fn mesh_light(light_view: View, layer: i32, place_px: vec2<f32>, t: f32, last: v
         let weights = select(1.0 - share, share, corner == vec2<i32>(1));
         let seen = textureLoad(shadow_maps, clamp(texel, vec2<i32>(0), last), layer, 0).xy;
         let depth = light_view.near + (light_view.far - light_view.near) * unpack2x16unorm(seen.y).x;
-        let is_blocked = (seen.x >> 29u) == KIND_MESH && depth < t && all(texel == clamp(texel, vec2<i32>(0), last));
+        let own = lit.t + dot(slope, vec2<f32>(corner) - share) - MESH_BIAS_TEXELS * lit.texel_light;
+        let is_blocked = (seen.x >> 29u) == KIND_MESH && depth < own && all(texel == clamp(texel, vec2<i32>(0), last));
         open += select(weights.x * weights.y, 0.0, is_blocked);
     }
     return open;
+}
+
+// Change of depth for each texel across the plane of this normal (light space), taken as no steeper than `most` to one.
+fn plane_slope(light_view: View, lit: LitPlace, normal: vec3<f32>, most: f32) -> vec2<f32> {
+    // Towards the light; of length 1 along its axis, as depths are.
+    let toward = mix(-lit.point / lit.t, vec3<f32>(0.0, 0.0, 1.0), light_view.orthographic);
+    let facing = dot(normal, toward);
+    let steep = normal.xy / (max(abs(facing), 0.01) * select(1.0, -1.0, facing < 0.0));
+    let tangent = length(steep);
+    return vec2<f32>(steep.x, -steep.y) * (min(tangent, most) / max(tangent, 1e-6)) * lit.texel_light;
 }
 
 fn shadow_light(light: Light, s: Surface) -> f32 {
@@ -53,13 +70,7 @@ fn shadow_light(light: Light, s: Surface) -> f32 {
     if light.softness_tan <= 0.0 {
         let toward = mix(-normalize(point), vec3<f32>(0.0, 0.0, 1.0), light_view.orthographic);
         let base = vec2<i32>(floor(place_px - 0.5));
-        // What a triangle shades is told by depths: the few that the map names would leave gaps between them. Moved a texel
-        // and a half outwards, no plane shades itself however it slopes.
-        var moved = lit;
-        if MESHES {
-            let outwards = (shadows.views[layer].light_from_view * vec4<f32>(s.normal_view, 0.0)).xyz;
-            moved = lit_place(light_view, point + outwards * (1.5 * texel_light));
-        }
+        // What a triangle shades is told by depths: the few that the map names would leave gaps between them.
         var seen = s.id;
         for (var i = 0; i < 4; i++) {
             let texel = base + vec2<i32>(i & 1, i >> 1);
@@ -72,7 +83,12 @@ fn shadow_light(light: Light, s: Surface) -> f32 {
             seen = id;
             if blocks(light_view, id, point, toward) { return 0.0; }
         }
-        if MESHES { return mesh_light(light_view, layer, moved.place_px, moved.t, last); }
+        if MESHES {
+            let is_flat = (s.id >> 29u) == KIND_MESH;
+            let facet = (shadows.views[layer].light_from_view * vec4<f32>(s.facet_view, 0.0)).xyz;
+            let slope = plane_slope(light_view, lit, facet, MESH_SLOPE);
+            return mesh_light(light_view, layer, lit, select(vec2<f32>(0.0), slope, is_flat), last);
+        }
         return 1.0;
     }
 
@@ -83,9 +99,7 @@ fn shadow_light(light: Light, s: Surface) -> f32 {
     var slope = vec2<f32>(0.0);
     if MESHES && (s.id >> 29u) == KIND_MESH {
         let normal = (shadows.views[layer].light_from_view * vec4<f32>(s.normal_view, 0.0)).xyz;
-        let steep = normal.xy / max(abs(normal.z), 0.05) * sign(normal.z);
-        let tangent = length(steep);
-        slope = vec2<f32>(steep.x, -steep.y) * (min(tangent, 4.0) / max(tangent, 1e-6)) * texel_light;
+        slope = plane_slope(light_view, lit, normal, SOFT_SLOPE);
     }
     // The widest penumbra: as if the blocker were the nearest thing that the light can see.
     // A point light has its angular diameter as seen from here, hence the quotient of the depths.

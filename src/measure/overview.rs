@@ -64,6 +64,35 @@ fn paragraph(page: &mut String, text: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::experiment::ChartKind;
+
+    #[test]
+    fn each_experiment_has_its_chart_and_what_it_says() {
+        let report = Report {
+            name: "speed",
+            doc: "How quick it is.",
+            chart: ChartKind::TimeByExtent { extent: "atoms" },
+            conditions: vec!["One sample a pixel.".to_owned()],
+            says: "It is quick. It is right.".to_owned(),
+            findings: Vec::new(),
+            adapter: Some("a card".to_owned()),
+            driver: Some("its driver".to_owned()),
+            date: "2026-11-26T01:02:03Z".to_owned(),
+            rounds: 2,
+            rounds_due: 5,
+            is_partial: true,
+            seconds: 1.0,
+            rows: Vec::new(),
+        };
+        let page = markdown(&[report]);
+        for words in [
+            "drawn on a card, driver its driver.",
+            "## `speed`\n\nHow quick it is.\n\n![speed](accuracy/speed.svg)\n\nIt is quick. It is right.\n\nOne sample a pixel.\n",
+            "2026-11-26; rounds: 2 of 5; noise: one round tells none; broken off before all was measured.",
+        ] {
+            assert!(page.contains(words), "{words:?} is not in {page}");
+        }
+    }
 
     #[test]
     fn paragraphs_are_broken_between_words() {
