@@ -57,4 +57,18 @@ for look in technical education advertisement; do
   "$restyle" render gearbox -s "$look" -o "$work/gearbox_$look.png" --size 760x620 2>/dev/null
 done
 convert "$work"/gearbox_{technical,education,advertisement}.png +append -strip +dither -colors 255 png8:gearbox.png
+# Fig. 5: without ambient occlusion, with it, and with rays instead (upper row: a molecule, lower row: the assembly).
+for effects in '' '"ao"'; do
+  cat > "$work/ao$effects.json" <<JSON
+{ "extends": "advertisement", "geometry": { "scale": 0.6 }, "mapping": { "post_effects": [$effects] },
+  "shaders": [ { "name": "ao", "shader": "ssaoPost", "properties": { "radius": "4r" } } ] }
+JSON
+done
+for scene in alpha_helix gearbox; do
+  "$restyle" render "$scene" -s "$work/ao.json" -o "$work/${scene}_without.png" --size 380x340 2>/dev/null
+  "$restyle" render "$scene" -s "$work/ao\"ao\".json" -o "$work/${scene}_with.png" --size 380x340 2>/dev/null
+  "$restyle" render "$scene" -s "$work/ao\"ao\".json" -o "$work/${scene}_rays.png" --size 380x340 --renderer reference 2>/dev/null
+done
+convert \( "$work"/alpha_helix_{without,with,rays}.png +append \) \( "$work"/gearbox_{without,with,rays}.png +append \) -append \
+  -strip +dither -colors 255 png8:fig5_occlusion.png
 ls -l -- *.png

@@ -23,7 +23,8 @@ struct MeshPart {
     row_z: vec4<f32>,
     // Linear RGB as half floats.
     color: vec2<u32>,
-    material: u32,
+    // Index into the materials, and in the upper half how thick it is in its radii, as a half float.
+    look: u32,
     // Of a sphere around it, in scene units.
     radius: f32,
 }
@@ -73,7 +74,7 @@ fn mesh_corners(index: u32) -> MeshCorners {
 }
 
 fn mesh_material(index: u32) -> u32 {
-    return object_texel(mesh_parts, 4u * mesh_corners(index).part + 3u).z;
+    return object_texel(mesh_parts, 4u * mesh_corners(index).part + 3u).z & 0xffffu;
 }
 
 fn mesh_to_world(part: MeshPart, position: vec3<f32>) -> vec3<f32> {

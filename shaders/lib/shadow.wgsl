@@ -29,7 +29,7 @@ const MESH_SLOPE: f32 = 16.0;
 const SOFT_SLOPE: f32 = 4.0;
 
 // Share of the light that triangles let through: of the four texels around a place, each weighed by how near it is
-// [Reeves1987 §3], and compared with the receiver's plane there [Isidoro2006].
+// [Reeves1987, throughout], and compared with the receiver's plane there [Isidoro2006].
 fn mesh_light(light_view: View, layer: i32, lit: LitPlace, slope: vec2<f32>, last: vec2<i32>) -> f32 {
     let base = floor(lit.place_px - 0.5);
     let share = lit.place_px - 0.5 - base;

@@ -1,6 +1,6 @@
 // Shadows from depths alone, as published: for measurements only, beside those of lib/shadow.wgsl that styles have.
-// Hard, SHADOW_FILTER 1: whether the one texel at the place is nearer to the light [Williams1978 §3].
-// Hard, SHADOW_FILTER 2: the share of 3x3 texels that are [Reeves1987 §3].
+// Hard, SHADOW_FILTER 1: whether the one texel at the place is nearer to the light [Williams1978, throughout].
+// Hard, SHADOW_FILTER 2: the share of 3x3 texels that are [Reeves1987, throughout].
 // Soft: mean depth of what is nearer, then the share that is within the penumbra it makes [Fernando2005 §2].
 
 // What keeps a surface from shading itself, in texels: enough for a slope of 45 degrees.

@@ -46,7 +46,7 @@ fn mesh_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) insta
     var position = to_view(view, mesh_to_world(part, vertex.position));
     var behind = 0.0;
     if SHELL {
-        let material = materials[part.material];
+        let material = materials[part.look & 0xffffu];
         let t = max(-position.z, view.near);
         let line = material.hull_px * view.pixel_view * select(t, 1.0, ORTHOGRAPHIC);
         let width = min(material.hull_world + line, SHELL_SHARE * part.radius);

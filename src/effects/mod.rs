@@ -68,8 +68,8 @@ pub trait PostEffect: Sync {
     fn reach_px(&self, values: &Values, context: &EffectContext<'_>) -> u32;
     /// Its passes in order.
     fn passes(&self) -> &'static [EffectPass];
-    /// Whether such values change any picture; an effect that does not is left out.
-    fn changes_anything(&self, _values: &Values) -> bool {
+    /// Whether such values change the picture; an effect that does not is left out.
+    fn changes_anything(&self, _values: &Values, _context: &EffectContext<'_>) -> bool {
         true
     }
     /// Names of the constants by which its WGSL leaves out what a style does not use.
@@ -83,7 +83,7 @@ pub trait PostEffect: Sync {
 }
 
 /// All post effects, in the order of their stages.
-pub const EFFECTS: &[&dyn PostEffect] = &[&outline::Outline];
+pub const EFFECTS: &[&dyn PostEffect] = &[&occlusion::AmbientOcclusion, &outline::Outline];
 
 /// Place in [`EFFECTS`] of a name.
 pub fn effect_index(name: &str) -> Option<usize> {

@@ -1,14 +1,164 @@
-//! `ssaoPost`: darkens what has things near it; its parameters.
+//! `ssaoPost`: darkens what has things near it, by what the picture shows of them.
 //!
-//! Drawn by the reference renderer alone so far, by rays (`src/reference/occlusion.rs`).
+//! `gtao` and `bitmask` after [Jimenez2016, throughout] and [Therrien2023, throughout], `hemisphere` after [Prost2016 §4.2]; where we differ: see
+//! `shaders/effects/occlusion.wgsl`. Its exact form, by rays: `src/reference/occlusion.rs`. Twin: `tests/twins/occlusion.rs`.
 
-use crate::config::param::Param;
+use super::{EffectContext, EffectPass, PassTarget, PostEffect};
+use crate::config::param::{Param, Values};
+use crate::gpu::{GpuStruct, StructInfo, Wgsl};
+use crate::{gpu_struct, wgsl};
+
+/// Values of `method`.
+const METHODS: &[&str] = &["bitmask", "gtao", "hemisphere"];
+
+/// Farthest place that a pixel looks at, in pixels. Ours: a bound on what tiles of large pictures have in common; larger radii
+/// are looked through up to there.
+pub const MAX_REACH_PX: f64 = 512.0;
+
+/// Radii on the screen below this darken nothing that a pixel shows.
+const LEAST_RADIUS_PX: f64 = 1.5;
 
 /// The parameters of `ssaoPost`.
 pub const PARAMS: &[Param] = &[
-    Param::length("radius", "3r").not_drawn_yet().doc("How far away things count, whatever the size of the picture."),
+    Param::choice("method", METHODS, "bitmask")
+        .doc("How it is found: by what is covered around each pixel, with thin things or as if all were solid, or by points as published.")
+        .examples(&[r#""bitmask""#, r#""gtao""#, r#""hemisphere""#]),
+    Param::length("radius", "3r")
+        .doc("How far away things count, whatever the size of the picture.")
+        .examples(&[r#""1r""#, r#""4r""#, r#""12r""#]),
     Param::number("intensity", 1.0)
         .range(0.0, 4.0)
-        .not_drawn_yet()
-        .doc("How much it darkens: 1 makes what is wholly enclosed black, 0 does nothing."),
+        .doc("How much it darkens: 1 makes what is wholly enclosed black, 0 does nothing.")
+        .examples(&["0.5", "1", "2"]),
+    Param::count("samples", 16)
+        .range(4.0, 256.0)
+        .doc("Places that each pixel looks at: more are smoother and slower.")
+        .examples(&["4", "16", "64"]),
+    Param::count("blur", 4)
+        .range(1.0, 8.0)
+        .unit("pixels")
+        .doc("Side of the square over which noise is evened out; 1 leaves it.")
+        .examples(&["1", "4", "8"]),
 ];
+
+gpu_struct! {
+    "effects/occlusion.wgsl",
+    /// See `shaders/effects/occlusion.wgsl`.
+    pub struct OcclusionParams {
+        /// Scene units within which things count.
+        pub radius: f32,
+        /// Light is multiplied by 1 - intensity times occlusion.
+        pub intensity: f32,
+        /// Points around the surface.
+        pub samples: u32,
+        /// Slices through the line of sight.
+        pub slices: u32,
+        /// Taps to each side of a slice.
+        pub steps: u32,
+        /// Side of the square over which noise is evened out, in pixels.
+        pub blur: u32,
+        /// Farthest tap in pixels.
+        pub reach_px: f32,
+        /// Padding.
+        pub _pad0: f32,
+    }
+}
+
+/// How many slices, and taps to each side of one, come nearest to a number of taps in all: twice as many to a side as slices.
+fn slices_and_steps(samples: u32) -> [u32; 2] {
+    let slices = (f64::from(samples) / 4.0).sqrt().round().max(1.0);
+    let steps = (f64::from(samples) / (2.0 * slices)).round().max(1.0);
+    [slices as u32, steps as u32]
+}
+
+/// Farthest tap in pixels.
+fn farthest_px(values: &Values, context: &EffectContext<'_>) -> f64 {
+    ((context.world)(values.length("radius")) / context.least_pixel_world).min(MAX_REACH_PX)
+}
+
+/// The effect's registry entry.
+pub struct AmbientOcclusion;
+
+impl PostEffect for AmbientOcclusion {
+    fn name(&self) -> &'static str {
+        "ssaoPost"
+    }
+    fn file(&self) -> &'static str {
+        "occlusion"
+    }
+    fn doc(&self) -> &'static str {
+        "Darkens creases and contacts."
+    }
+    fn params(&self) -> &'static [Param] {
+        PARAMS
+    }
+    fn wgsl(&self) -> &'static [Wgsl] {
+        const FILES: &[Wgsl] = &[wgsl!("effects/occlusion.wgsl")];
+        FILES
+    }
+    fn params_info(&self) -> StructInfo {
+        OcclusionParams::info()
+    }
+    fn uniform(&self, values: &Values, context: &EffectContext<'_>) -> Vec<u8> {
+        let samples = values.count("samples");
+        let [slices, steps] = slices_and_steps(samples);
+        bytemuck::bytes_of(&OcclusionParams {
+            radius: (context.world)(values.length("radius")) as f32,
+            intensity: values.number("intensity") as f32,
+            samples,
+            slices,
+            steps,
+            blur: values.count("blur"),
+            reach_px: farthest_px(values, context) as f32,
+            _pad0: 0.0,
+        })
+        .to_vec()
+    }
+    fn reach_px(&self, values: &Values, context: &EffectContext<'_>) -> u32 {
+        farthest_px(values, context).ceil() as u32 + values.count("blur")
+    }
+    fn passes(&self) -> &'static [EffectPass] {
+        const PASSES: &[EffectPass] = &[
+            EffectPass {
+                name: "occlusion",
+                entry: "estimate_occlusion",
+                target: PassTarget::Own { format: wgpu::TextureFormat::R32Float, pixels: [1, 1] },
+            },
+            EffectPass { name: "occlusion_applied", entry: "apply_occlusion", target: PassTarget::Picture },
+        ];
+        PASSES
+    }
+    fn changes_anything(&self, values: &Values, context: &EffectContext<'_>) -> bool {
+        values.number("intensity") > 0.0 && farthest_px(values, context) >= LEAST_RADIUS_PX
+    }
+    fn features(&self) -> &'static [&'static str] {
+        &["OCCLUSION_HORIZONS", "OCCLUSION_THIN", PUBLISHED, ROTATED]
+    }
+    fn features_used(&self, values: &Values) -> u32 {
+        match values.choice("method") {
+            "bitmask" => 0b11,
+            "gtao" => 0b01,
+            _ => 0,
+        }
+    }
+}
+
+/// The form of `hemisphere` as published, for measurements: no style has this feature.
+pub const PUBLISHED: &str = "OCCLUSION_PUBLISHED";
+/// `hemisphere` with its points turned instead of mirrored, for measurements: no style has this feature.
+pub const ROTATED: &str = "OCCLUSION_ROTATED";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn taps_are_as_many_as_asked_for() {
+        for samples in 4..=256 {
+            let [slices, steps] = slices_and_steps(samples);
+            let taps = 2 * slices * steps;
+            assert!(taps.abs_diff(samples) <= slices, "{samples}: {slices} slices of {steps} steps to a side");
+        }
+        assert_eq!([4, 16, 64, 256].map(slices_and_steps), [[1, 2], [2, 4], [4, 8], [8, 16]]);
+    }
+}

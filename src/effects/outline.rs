@@ -149,7 +149,7 @@ impl PostEffect for Outline {
         ];
         PASSES
     }
-    fn changes_anything(&self, values: &Values) -> bool {
+    fn changes_anything(&self, values: &Values, _: &EffectContext<'_>) -> bool {
         WIDTHS.iter().any(|name| is_drawn(values.length(name)))
     }
     fn features(&self) -> &'static [&'static str] {
@@ -200,7 +200,8 @@ mod tests {
     #[test]
     fn lines_without_width_are_left_out() {
         let values = Values::defaults(PARAMS);
-        assert!(Outline.changes_anything(&values));
+        let context = EffectContext { screen: &|_| (0.0, 0.0), world: &|_| 0.0, least_pixel_world: 1.0 };
+        assert!(Outline.changes_anything(&values, &context));
         assert_eq!(Outline.features_used(&values), 0b110);
     }
 }

@@ -188,7 +188,7 @@ fn add_parts(
         let mut color = pack_linear(colors.of(assembly, part, own));
         // Colours of vertices are the file's, too: the spare half says that they count.
         color[1] |= u32::from(PartColors::is_of_file(own) && !shape.colors.is_empty()) << 16;
-        Some(MeshPart::new(&part.world_from_shape, color, material, shape.sphere.radius))
+        Some(MeshPart::new(&part.world_from_shape, color, material, shape))
     });
     list.parts = parts.collect();
     list.meshes = Some(Arc::clone(scene));

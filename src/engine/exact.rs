@@ -19,8 +19,8 @@ use crate::reference::{
 use crate::scene::{Camera, Image, Pixels, Scene, srgb_from_linear};
 use crate::shading::{SHADERS, basic::BasicMaterial, toon::ToonMaterial};
 
-/// Post effects that the reference draws, by their names in style files.
-pub const DRAWN_EFFECTS: &[&str] = &["ssaoPost", "dofPost"];
+/// Post effects that the reference alone draws, by their names in style files.
+pub const DRAWN_EFFECTS: &[&str] = &["dofPost"];
 
 /// Draws stills of one scene in one style, on all cores.
 pub struct Exact {
@@ -238,7 +238,7 @@ fn world(list: DrawList, camera: &Camera, content: &Content, materials: &[Materi
     let meshes = list.meshes.as_ref().map(|scene| {
         let parts = (0..).zip(&list.parts).filter_map(|(index, part)| {
             let part = part.as_ref()?;
-            let look = Look { color: unpacked(part.color), material: part.material, group: 0 };
+            let look = Look { color: unpacked(part.color), material: part.material(), group: 0 };
             Some(Part { part: index, look, has_vertex_colors: part.color[1] >> 16 != 0 })
         });
         Meshes { scene: Arc::clone(scene), parts: parts.collect() }
@@ -280,7 +280,7 @@ mod tests {
     fn the_reference_knows_every_shader_and_effect() {
         // A new one needs its exact form in `shades` or `light_rows`.
         assert_eq!(SHADERS.iter().map(|shader| shader.name()).collect::<Vec<_>>(), ["basic", "toon", "unlit"]);
-        assert_eq!(EFFECTS.iter().map(|effect| effect.name()).collect::<Vec<_>>(), ["outlinePost"]);
+        assert_eq!(EFFECTS.iter().map(|effect| effect.name()).collect::<Vec<_>>(), ["ssaoPost", "outlinePost"]);
         let catalog = catalog();
         let known = |name: &str| catalog.iter().any(|entry| entry.name == name && !entry.params.is_empty());
         assert!(DRAWN_EFFECTS.iter().all(|name| known(name)));

@@ -33,9 +33,8 @@ pub use live::{Part, Refusal, Reload, ReloadTimes, Sources, source_tree_shaders}
 pub use tiles::TileError;
 
 /// Effects and shaders of the contract that this version names but does not draw.
-const NOT_DRAWN: [(&str, Role, &str, &[Param]); 3] = [
+const NOT_DRAWN: [(&str, Role, &str, &[Param]); 2] = [
     ("curvature", Role::Object, "Glass that is clearer where the surface is flat.", &[]),
-    ("ssaoPost", Role::PostEffect, "Darkens creases and contacts.", effects::occlusion::PARAMS),
     ("dofPost", Role::PostEffect, "Blurs what is out of focus.", effects::focus::PARAMS),
 ];
 
@@ -73,6 +72,23 @@ impl Request {
     pub const fn new(size: [u32; 2], samples: u32) -> Request {
         Request { size, samples, transparent: false, wide: false, turn_deg: 0.0 }
     }
+}
+
+/// A form of a post effect that no style asks for, such as the published one: for measurements.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct EffectForm {
+    /// The effect's name in style files.
+    pub effect: &'static str,
+    /// Which of its features is on.
+    pub feature: &'static str,
+}
+
+impl EffectForm {
+    /// `ssaoPost` with `hemisphere` as published.
+    pub const OCCLUSION_PUBLISHED: EffectForm =
+        EffectForm { effect: "ssaoPost", feature: effects::occlusion::PUBLISHED };
+    /// `ssaoPost` with `hemisphere`, its points turned instead of mirrored.
+    pub const OCCLUSION_ROTATED: EffectForm = EffectForm { effect: "ssaoPost", feature: effects::occlusion::ROTATED };
 }
 
 /// Counts of what a frame draws.
@@ -132,6 +148,8 @@ pub struct Engine {
     /// What was drawn last: new content is made ready for the same again.
     last_request: Option<Request>,
     live: Option<Live>,
+    /// Forms of post effects in which the next frames are drawn.
+    forms: Vec<EffectForm>,
 }
 
 impl Engine {
@@ -147,7 +165,16 @@ impl Engine {
 
     fn empty(gpu: Arc<Gpu>) -> Engine {
         let renderer = Renderer::new(Arc::clone(&gpu));
-        Engine { gpu, renderer, content: None, drawn: None, stale: false, last_request: None, live: None }
+        Engine {
+            gpu,
+            renderer,
+            content: None,
+            drawn: None,
+            stale: false,
+            last_request: None,
+            live: None,
+            forms: Vec::new(),
+        }
     }
 
     /// The device.
@@ -176,6 +203,11 @@ impl Engine {
     /// Changes how fine the shadows of the next frames are.
     pub fn set_shadow_quality(&mut self, quality: ShadowQuality) {
         self.renderer.set_shadow_quality(quality);
+    }
+
+    /// Draws post effects of the next frames in these forms.
+    pub fn set_forms(&mut self, forms: Vec<EffectForm>) {
+        self.forms = forms;
     }
 
     /// Replaces the scene.
@@ -220,7 +252,7 @@ impl Engine {
         let known = self.drawn.as_ref().filter(|_| !scene_is_new);
         let resolved = resolve(&content, known, request.size[1]);
         let resolved_at = Instant::now();
-        frame_input(&content, &resolved.drawn, &request, |input| {
+        frame_input(&content, &resolved.drawn, &request, &self.forms, |input| {
             self.renderer.prepare(resolved.list.as_ref(), &resolved.materials, input)
         })?;
         self.take(resolved)?;
@@ -304,7 +336,7 @@ impl Engine {
         self.refresh(request.size[1])?;
         self.last_request = Some(*request);
         let (Some(content), Some(drawn)) = (&self.content, &self.drawn) else { return Err(GpuError::NothingToDraw) };
-        frame_input(content, drawn, request, |input| draw(&mut self.renderer, input))
+        frame_input(content, drawn, request, &self.forms, |input| draw(&mut self.renderer, input))
     }
 
     /// Milliseconds of each pass of the last timed frame.
@@ -394,10 +426,23 @@ fn resolve(content: &Content, drawn: Option<&Drawn>, height_px: u32) -> Resolved
 }
 
 /// Calls `draw` with what a frame of the content needs beside objects and materials.
-fn frame_input<T>(content: &Content, drawn: &Drawn, request: &Request, draw: impl FnOnce(&FrameInput<'_>) -> T) -> T {
+fn frame_input<T>(
+    content: &Content,
+    drawn: &Drawn,
+    request: &Request,
+    forms: &[EffectForm],
+    draw: impl FnOnce(&FrameInput<'_>) -> T,
+) -> T {
     let camera = content.camera.turned(request.size, request.turn_deg.to_radians());
     let lighting = drawn.lighting.lighting(&camera);
-    let effects = effects(&content.style, &drawn.lengths, &camera, request.size[1]);
+    let mut effects = effects(&content.style, &drawn.lengths, &camera, request.size[1]);
+    for effect in &mut effects {
+        let registered = EFFECTS[effect.effect];
+        for (bit, feature) in registered.features().iter().enumerate() {
+            let is_on = forms.iter().any(|form| form.effect == registered.name() && form.feature == *feature);
+            effect.features |= u32::from(is_on) << bit;
+        }
+    }
     draw(&FrameInput {
         camera: &camera,
         lighting: &lighting,
@@ -425,7 +470,7 @@ fn effects(style: &Style, lengths: &Lengths, camera: &Camera, height_px: u32) ->
         .filter_map(|used| {
             let effect = effect_index(used.shader)?;
             let registered = EFFECTS[effect];
-            registered.changes_anything(&used.values).then(|| Effect {
+            registered.changes_anything(&used.values, &context).then(|| Effect {
                 effect,
                 features: registered.features_used(&used.values),
                 params: registered.uniform(&used.values, &context),

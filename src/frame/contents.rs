@@ -77,7 +77,7 @@ impl ObjectNeeds {
             },
             atom_material: common(list.atoms.iter().map(|atom| atom.material)),
             connector_material: common(list.connectors.iter().map(|connector| connector.material)),
-            part_material: common(list.drawn_parts().map(|part| part.material)),
+            part_material: common(list.drawn_parts().map(|part| part.material())),
         }
     }
 }

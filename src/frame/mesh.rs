@@ -12,7 +12,7 @@ use glam::Affine3A;
 use super::texels::{self, KeptTexture, OBJECT_ROW};
 use crate::gpu::{Gpu, GpuError};
 use crate::gpu_struct;
-use crate::scene::{Assembly, Scene};
+use crate::scene::{Assembly, Scene, Shape};
 
 gpu_struct! {
     "lib/mesh.wgsl",
@@ -45,8 +45,8 @@ gpu_struct! {
         pub row_z: [f32; 4],
         /// Linear RGB as half floats.
         pub color: [u32; 2],
-        /// Index into the materials.
-        pub material: u32,
+        /// Index into the materials, and in the upper half how thick it is in its radii, as a half float.
+        pub look: u32,
         /// Of a sphere around it, in scene units.
         pub radius: f32,
     }
@@ -68,8 +68,8 @@ gpu_struct! {
 }
 
 impl MeshPart {
-    /// A part of this placement, colour and material; `radius` is its sphere's, in the shape's units.
-    pub fn new(world_from_shape: &Affine3A, color: [u32; 2], material: u32, radius: f32) -> MeshPart {
+    /// A part of this placement, colour and material.
+    pub fn new(world_from_shape: &Affine3A, color: [u32; 2], material: u32, shape: &Shape) -> MeshPart {
         let matrix = world_from_shape.matrix3;
         let shift = world_from_shape.translation;
         let row = |axis: usize| {
@@ -77,7 +77,15 @@ impl MeshPart {
             [row.x, row.y, row.z, shift[axis]]
         };
         let scale = matrix.determinant().abs().cbrt();
-        MeshPart { row_x: row(0), row_y: row(1), row_z: row(2), color, material, radius: radius * scale }
+        let radius = shape.sphere.radius;
+        let thickness = half::f16::from_f32(shape.thickness / radius.max(f32::MIN_POSITIVE));
+        let look = material & 0xffff | u32::from(thickness.to_bits()) << 16;
+        MeshPart { row_x: row(0), row_y: row(1), row_z: row(2), color, look, radius: radius * scale }
+    }
+
+    /// Index into the materials.
+    pub fn material(&self) -> u32 {
+        self.look & 0xffff
     }
 }
 

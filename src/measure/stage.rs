@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::experiment::{MeasureError, Subject, Truth};
 use crate::config::{self, Catalog, Source, Style};
 use crate::engine::exact::Exact;
-use crate::engine::{self, Engine, Gpu, GpuError, Request, ShadowQuality};
+use crate::engine::{self, EffectForm, Engine, Gpu, GpuError, Request, ShadowQuality};
 use crate::scene::{Image, Scene};
 use crate::shipped::{self, SCENES, Shipped};
 
@@ -66,7 +66,7 @@ impl Look {
 }
 
 /// What of a stage its engine shows.
-type Shown = (Rc<str>, Request, ShadowQuality);
+type Shown = (Rc<str>, Request, ShadowQuality, Vec<EffectForm>);
 
 /// A scene on the device, which cases show in styles and sizes of theirs.
 pub struct Stage {
@@ -85,7 +85,7 @@ impl Stage {
     /// The scene in a style, as a frame that is measured.
     pub fn frame(self: &Rc<Stage>, look: &Look, request: Request) -> GpuFrame {
         let shadows = ShadowQuality::default();
-        GpuFrame { stage: Rc::clone(self), look: look.clone(), request, shadows }
+        GpuFrame { stage: Rc::clone(self), look: look.clone(), request, shadows, forms: Vec::new() }
     }
 }
 
@@ -104,6 +104,8 @@ pub struct GpuFrame {
     pub request: Request,
     /// How fine shadows are.
     pub shadows: ShadowQuality,
+    /// Forms of post effects that no style asks for.
+    pub forms: Vec<EffectForm>,
 }
 
 impl GpuFrame {
@@ -114,10 +116,11 @@ impl GpuFrame {
         let style = || Style::clone(&self.look.style);
         let engine =
             engine.get_or_insert_with(|| Engine::new(Arc::clone(&self.stage.gpu), self.stage.scene.clone(), style()));
-        let wanted = (Rc::clone(&self.look.name), self.request, self.shadows);
+        let wanted = (Rc::clone(&self.look.name), self.request, self.shadows, self.forms.clone());
         if shown.as_ref() != Some(&wanted) {
             engine.set_style(style());
             engine.set_shadow_quality(self.shadows);
+            engine.set_forms(self.forms.clone());
             engine.draw(&self.request, false, &mut |_| ControlFlow::Continue(()))?;
             *shown = Some(wanted);
         }

@@ -9,6 +9,7 @@ mod gpu;
 mod impostors;
 mod mesh_lines;
 mod meshes;
+mod occlusion;
 mod outline;
 mod outline_truth;
 mod outlines;

@@ -43,8 +43,9 @@ impl Strip {
     }
 }
 
-/// Parameters that change nothing in a still.
-const UNSEEN: [(&str, &str); 2] = [("geometry", "file_unit"), ("lights", "movable")];
+/// Parameters that change nothing in a still, or no more than its noise.
+const UNSEEN: [(&str, &str); 4] =
+    [("geometry", "file_unit"), ("lights", "movable"), ("ssaoPost", "samples"), ("ssaoPost", "blur")];
 
 /// What a parameter is shown on.
 struct Setting {
@@ -275,6 +276,13 @@ const SETTINGS: &[Setting] = &[
         scene: Molecule::Shipped("caffeine"),
         said: "Caffeine, with a `silhouette_width` of `8pt` where it is not the one that changes.",
         style: r##"{ "geometry": { "scale": 0.6 }, "shaders": [{ "name": "shown", "properties": { "silhouette_width": "8pt" } }] }"##,
+    },
+    Setting {
+        group: "ssaoPost",
+        param: "",
+        scene: Molecule::Shipped("arsenic_trioxide"),
+        said: "A cage of arsenic and oxygen, with a `radius` of `4r` where it is not the one that changes.",
+        style: r##"{ "geometry": { "scale": 0.5 }, "shaders": [{ "name": "shown", "properties": { "radius": "4r" } }] }"##,
     },
     // Any shader, also one that this table does not know yet.
     Setting {

@@ -5,6 +5,7 @@ mod looks;
 mod outlines;
 mod shading;
 mod shadows;
+mod ssao;
 mod toon_edges;
 
 use super::experiment::Experiment;
@@ -17,6 +18,7 @@ pub const EXPERIMENTS: &[&dyn Experiment] = &[
     &geometry::Geometry,
     &outlines::Outlines,
     &shadows::Shadows,
+    &ssao::Ssao,
 ];
 
 /// The experiment of this name.

@@ -10,9 +10,9 @@ const GAP_PIXELS: usize = 2;
 /// How lines differ from those that should be there. The lines of a picture are its red; nothing else in it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LineErrors {
-    /// Share of the pixels of drawn lines that have a true one within [`TOLERANCE_PX`]; 1 where none are drawn.
+    /// Share of the pixels of drawn lines that have a true one within a pixel; 1 where none are drawn.
     pub precision: f64,
-    /// Share of the pixels of true lines that have a drawn one within [`TOLERANCE_PX`]; 1 where there are none.
+    /// Share of the pixels of true lines that have a drawn one within a pixel; 1 where there are none.
     pub recall: f64,
     /// Mean difference of widths in pixels: of the areas that lines cover around a pixel of a true one, by its length there.
     pub width_error_px: f64,
@@ -51,7 +51,7 @@ fn mask(cover: &[f64]) -> Vec<bool> {
     cover.iter().map(|share| *share > 0.5).collect()
 }
 
-/// Share of the pixels of `of` that have one of `among` within [`TOLERANCE_PX`]; 1 where `of` is empty. Rows of `width`.
+/// Share of the pixels of `of` that have one of `among` within a pixel; 1 where `of` is empty. Rows of `width`.
 pub fn share_near(of: &[bool], among: &[bool], width: usize) -> f64 {
     let near = widened(among, width);
     let count = of.iter().filter(|is| **is).count();

@@ -2,7 +2,7 @@
 //!
 //! Cost: 20 bytes per vertex (24 with colours), 12 per triangle, some 100 per part.
 
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, DVec3, Vec3};
 
 use crate::scene::Sphere;
 
@@ -37,6 +37,28 @@ pub struct Shape {
     pub triangles: Vec<[u32; 3]>,
     /// A sphere around all of it.
     pub sphere: Sphere,
+    /// How thick it is on average: the mean length of lines within it. Infinite where it does not enclose a volume.
+    pub thickness: f32,
+}
+
+impl Shape {
+    /// The mean length of all lines through a closed surface, which is four times its volume over its area (Cauchy).
+    /// Infinite of an open one.
+    pub(super) fn mean_chord(&self) -> f32 {
+        /// A closed surface's area vectors add up to nothing; share of its area by which they may miss it.
+        const OPEN: f64 = 1e-3;
+        let (mut volume, mut area, mut sum) = (0.0f64, 0.0f64, DVec3::ZERO);
+        let origin = self.sphere.center;
+        for triangle in &self.triangles {
+            let [a, b, c] = triangle.map(|corner| (self.positions[corner as usize] - origin).as_dvec3());
+            let across = (b - a).cross(c - a);
+            volume += a.dot(across) / 6.0;
+            area += 0.5 * across.length();
+            sum += 0.5 * across;
+        }
+        let chord = 4.0 * volume / area;
+        if sum.length() <= OPEN * area && chord > 0.0 { chord as f32 } else { f32::INFINITY }
+    }
 }
 
 /// A shape at a place, with what selectors can ask of it.

@@ -45,6 +45,7 @@ pub(super) fn mend(raw: RawShape, frame: &Frame, placing: Placing, name: &str, r
     note(NoteKind::NormalsDropped, known.check_normals(&mut surface));
     let mut shape = vertices::make(surface, links, &known, placing);
     shape.sphere = bounding_sphere(shape.positions.iter().map(|&p| (p, 0.0)));
+    shape.thickness = shape.mean_chord();
     (!shape.triangles.is_empty()).then_some(shape)
 }
 
