@@ -4,6 +4,7 @@ mod check;
 mod compare;
 mod copy;
 mod exact;
+mod explain;
 mod gallery;
 mod info;
 mod inputs;
@@ -42,6 +43,8 @@ enum Command {
     Check(check::Args),
     /// Say what scenes hold: atoms, residues, parts, materials, bounds, and selectors for them
     Info(info::Args),
+    /// Say which passes a frame has and why, and which are left out
+    Explain(explain::Args),
     /// Say how far two pictures are from each other, and where
     Compare(compare::Args),
     /// Chart what methods cost against how far they are from the truth
@@ -117,6 +120,7 @@ pub fn run() -> ExitCode {
         Command::Gallery(args) => gallery::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Info(args) => info::run(&args),
+        Command::Explain(args) => explain::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Measure(args) => measure::run(&args),
         Command::Copy(args) => copy::run(&args),

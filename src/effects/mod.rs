@@ -68,9 +68,9 @@ pub trait PostEffect: Sync {
     fn reach_px(&self, values: &Values, context: &EffectContext<'_>) -> u32;
     /// Its passes in order.
     fn passes(&self) -> &'static [EffectPass];
-    /// Whether such values change the picture; an effect that does not is left out.
-    fn changes_anything(&self, _values: &Values, _context: &EffectContext<'_>) -> bool {
-        true
+    /// Why such values change nothing in the picture, if so: the effect is then left out.
+    fn changes_nothing(&self, _values: &Values, _context: &EffectContext<'_>) -> Option<&'static str> {
+        None
     }
     /// Names of the constants by which its WGSL leaves out what a style does not use.
     fn features(&self) -> &'static [&'static str] {

@@ -128,8 +128,11 @@ impl PostEffect for AmbientOcclusion {
         ];
         PASSES
     }
-    fn changes_anything(&self, values: &Values, context: &EffectContext<'_>) -> bool {
-        values.number("intensity") > 0.0 && farthest_px(values, context) >= LEAST_RADIUS_PX
+    fn changes_nothing(&self, values: &Values, context: &EffectContext<'_>) -> Option<&'static str> {
+        if values.number("intensity") <= 0.0 {
+            return Some("its intensity is 0");
+        }
+        (farthest_px(values, context) < LEAST_RADIUS_PX).then_some("its radius is less than 1.5 pixels anywhere")
     }
     fn features(&self) -> &'static [&'static str] {
         &["OCCLUSION_HORIZONS", "OCCLUSION_THIN", PUBLISHED, ROTATED]

@@ -149,8 +149,9 @@ impl PostEffect for Outline {
         ];
         PASSES
     }
-    fn changes_anything(&self, values: &Values, _: &EffectContext<'_>) -> bool {
-        WIDTHS.iter().any(|name| is_drawn(values.length(name)))
+    fn changes_nothing(&self, values: &Values, _: &EffectContext<'_>) -> Option<&'static str> {
+        let is_any = WIDTHS.iter().any(|name| is_drawn(values.length(name)));
+        (!is_any).then_some("its lines have no width")
     }
     fn features(&self) -> &'static [&'static str] {
         &["OUTLINE_CREASES", "OUTLINE_BOUNDARIES", "OUTLINE_SILHOUETTES", "OUTLINE_WORLD_WIDTHS"]
@@ -201,7 +202,7 @@ mod tests {
     fn lines_without_width_are_left_out() {
         let values = Values::defaults(PARAMS);
         let context = EffectContext { screen: &|_| (0.0, 0.0), world: &|_| 0.0, least_pixel_world: 1.0 };
-        assert!(Outline.changes_anything(&values, &context));
+        assert_eq!(Outline.changes_nothing(&values, &context), None);
         assert_eq!(Outline.features_used(&values), 0b110);
     }
 }

@@ -16,7 +16,7 @@ use std::time::Instant;
 use glam::DVec3;
 
 use crate::config::param::Param;
-use crate::config::{CatalogEntry, LightKind, ObjectKind, Role, Shadow, Style};
+use crate::config::{CatalogEntry, LightKind, ObjectKind, Role, Shadow, Style, Values};
 use crate::effects::{self, EFFECTS, EffectContext, effect_index};
 use crate::frame::objects::DrawList;
 use crate::frame::{self, Aovs, Effect, FrameInput, Materials, Renderer, TargetBytes};
@@ -27,7 +27,7 @@ use crate::shading::SHADERS;
 use build::ObjectKey;
 use live::Live;
 
-pub use crate::frame::{MAX_SAMPLES, ShadowFilter, ShadowQuality};
+pub use crate::frame::{MAX_SAMPLES, ShadowFilter, ShadowQuality, Step};
 pub use crate::gpu::{Counters, Gpu, GpuError};
 pub use live::{Part, Refusal, Reload, ReloadTimes, Sources, source_tree_shaders};
 pub use tiles::TileError;
@@ -303,6 +303,35 @@ impl Engine {
         self.with_input(request, |_, input| Ok(input.effects.iter().map(|effect| effect.reach_px).sum()))
     }
 
+    /// The passes that a frame has and why, and those that are left out and why, without drawing any. Of a picture in tiles it
+    /// is the frame of the first tile, without what it shares with its neighbours.
+    ///
+    /// # Errors
+    /// As [`Engine::draw`].
+    pub fn explain(&mut self, request: &Request) -> Result<Vec<Step>, GpuError> {
+        let steps = self.with_input(request, |renderer, input| {
+            renderer.explain(&FrameInput { tile: Engine::first_tile(request), ..input.clone() })
+        })?;
+        let (Some(content), Some(drawn)) = (&self.content, &self.drawn) else { return Err(GpuError::NothingToDraw) };
+        let camera = content.camera.turned(request.size, request.turn_deg.to_radians());
+        // For each effect why it is left out, where it is listed and where not.
+        let mut reasons: Vec<Option<&str>> = vec![Some("post_effects does not list it"); EFFECTS.len()];
+        with_effects(&content.style, &drawn.lengths, &camera, request.size[1], |effect, values, context| {
+            reasons[effect] = EFFECTS[effect].changes_nothing(values, context);
+        });
+        let is_listed = |name: &str| {
+            content.style.listed_effects.iter().any(|listed| content.style.shaders[listed.index].shader == name)
+        };
+        let registered = EFFECTS.iter().zip(&reasons).filter_map(|(effect, why)| Some((effect.name(), (*why)?)));
+        let not_drawn = NOT_DRAWN.iter().filter(|(_, role, ..)| *role == Role::PostEffect);
+        let not_drawn = not_drawn.map(|(name, ..)| match is_listed(name) {
+            true => (*name, "the reference renderer alone draws it so far"),
+            false => (*name, "post_effects does not list it"),
+        });
+        let left_out = registered.chain(not_drawn).map(|(name, reason)| Step::left_out(name, reason));
+        Ok(steps.into_iter().chain(left_out).collect())
+    }
+
     /// Draws and reads one still.
     ///
     /// # Errors
@@ -459,25 +488,39 @@ fn frame_input<T>(
 
 /// The post effects of a style in the order of their stages, without those that change nothing.
 fn effects(style: &Style, lengths: &Lengths, camera: &Camera, height_px: u32) -> Vec<Effect> {
+    let mut effects = Vec::new();
+    with_effects(style, lengths, camera, height_px, |effect, values, context| {
+        let registered = EFFECTS[effect];
+        if registered.changes_nothing(values, context).is_none() {
+            effects.push(Effect {
+                effect,
+                features: registered.features_used(values),
+                params: registered.uniform(values, context),
+                reach_px: registered.reach_px(values, context),
+            });
+        }
+    });
+    effects.sort_by_key(|effect| effect.effect);
+    effects
+}
+
+/// Gives `each` the post effects that a style lists, by their places in the registry.
+fn with_effects(
+    style: &Style,
+    lengths: &Lengths,
+    camera: &Camera,
+    height_px: u32,
+    mut each: impl FnMut(usize, &Values, &EffectContext<'_>),
+) {
     let pixel_world = camera.pixel_view(height_px) * if camera.orthographic { 1.0 } else { camera.near };
     let context = EffectContext {
         screen: &|length| lengths.screen(length, height_px),
         world: &|length| lengths.world(length),
         least_pixel_world: f64::from(pixel_world.max(f32::MIN_POSITIVE)),
     };
-    let listed = style.post_effects.iter().map(|&index| &style.shaders[index]);
-    let mut effects: Vec<Effect> = listed
-        .filter_map(|used| {
-            let effect = effect_index(used.shader)?;
-            let registered = EFFECTS[effect];
-            registered.changes_anything(&used.values, &context).then(|| Effect {
-                effect,
-                features: registered.features_used(&used.values),
-                params: registered.uniform(&used.values, &context),
-                reach_px: registered.reach_px(&used.values, &context),
-            })
-        })
-        .collect();
-    effects.sort_by_key(|effect| effect.effect);
-    effects
+    for used in style.post_effects.iter().map(|&index| &style.shaders[index]) {
+        if let Some(effect) = effect_index(used.shader) {
+            each(effect, &used.values, &context);
+        }
+    }
 }

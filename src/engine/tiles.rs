@@ -51,6 +51,12 @@ impl Engine {
         crate::frame::check_picture(&self.gpu, request.size)
     }
 
+    /// The first tile of a picture that is drawn in tiles.
+    pub(super) fn first_tile(request: &Request) -> Option<Tile> {
+        Engine::is_tiled(request)
+            .then(|| Tile { origin_px: [0, 0], size_px: request.size.map(|side| side.min(TILE_PX)) })
+    }
+
     /// How many tiles a picture has.
     pub fn num_tiles(request: &Request) -> u32 {
         request.size[0].div_ceil(TILE_PX).saturating_mul(request.size[1].div_ceil(TILE_PX))

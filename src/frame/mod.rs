@@ -4,6 +4,7 @@
 
 mod aov;
 mod contents;
+mod explain;
 mod fullscreen;
 mod lights;
 pub mod mesh;
@@ -24,6 +25,7 @@ use std::sync::Arc;
 pub use aov::aov_module;
 pub use contents::Materials;
 use contents::{Contents, Needs};
+pub use explain::Step;
 pub use lights::{Light, Lights, MAX_LIGHTS};
 use objects::{DrawList, Material};
 use occlusion::Reach;
@@ -248,6 +250,17 @@ impl Renderer {
         self.resolve = resolve;
         self.aov = aov::Aov::default();
         Ok(())
+    }
+
+    /// The passes of a frame, without drawing any.
+    ///
+    /// # Errors
+    /// [`GpuError`] where the picture does not fit the device.
+    pub fn explain(&self, input: &FrameInput<'_>) -> Result<Vec<Step>, GpuError> {
+        check_size(&self.gpu, input)?;
+        let plan = Plan::new(&self.gpu, &self.contents.needs(), input, self.shadow_quality);
+        let [spheres, cylinders] = self.object_counts().map(u64::from);
+        Ok(explain::steps(&self.gpu, &plan, input, [spheres, cylinders, self.num_triangles()]))
     }
 
     fn build(&mut self, needs: &Needs, plan: &Plan, wide: bool) -> Result<(), GpuError> {

@@ -215,8 +215,11 @@ impl ShadowMaps {
 
     /// Bytes of all maps.
     pub fn bytes(&self) -> u64 {
-        let extent = self.seen.size();
-        let texels = u64::from(extent.width) * u64::from(extent.height);
-        texels * (8 * u64::from(extent.depth_or_array_layers) + 4)
+        (0..self.layers.len()).map(|layer| ShadowMaps::layer_bytes(self.seen.width(), layer == 0)).sum()
+    }
+
+    /// Bytes of a layer; the first has the depths to test with, which all use.
+    pub fn layer_bytes(size: u32, is_first: bool) -> u64 {
+        u64::from(size) * u64::from(size) * if is_first { 12 } else { 8 }
     }
 }

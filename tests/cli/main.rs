@@ -8,6 +8,7 @@ mod bad_scenes;
 mod bad_styles;
 mod check;
 mod compare;
+mod explain;
 mod extremes;
 mod info;
 mod measure;

@@ -1,0 +1,138 @@
+//! The passes of a frame with their reasons, sizes and bytes, told without drawing any.
+
+use super::shadow::ShadowMaps;
+use super::{FrameInput, OUTPUT_8, OUTPUT_16, Plan, light_format};
+use super::{post::COLOR_FORMAT, post::GEOMETRY_FORMAT, visibility::DEPTH_FORMAT, visibility::ID_FORMAT};
+use crate::effects::{EFFECTS, PassTarget};
+use crate::gpu::Gpu;
+use crate::shading::SHADERS;
+
+/// A pass that a frame has, or could have and has not.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Step {
+    /// What it is called, as in timings where it is timed.
+    pub name: String,
+    /// Whether the frame has it.
+    pub is_drawn: bool,
+    /// Width and height of what it draws to, in pixels; none of what is left out, or is part of another pass.
+    pub size: Option<[u32; 2]>,
+    /// Bytes of the targets that exist for its sake.
+    pub bytes: u64,
+    /// Why the frame has it, or has it not.
+    pub reason: String,
+}
+
+impl Step {
+    /// A pass that a frame has.
+    pub fn drawn(name: &str, size: [u32; 2], bytes: u64, reason: impl Into<String>) -> Step {
+        Step { name: name.to_owned(), is_drawn: true, size: Some(size), bytes, reason: reason.into() }
+    }
+
+    /// A pass that a frame has not.
+    pub fn left_out(name: &str, reason: impl Into<String>) -> Step {
+        Step { name: name.to_owned(), is_drawn: false, size: None, bytes: 0, reason: reason.into() }
+    }
+}
+
+/// Bytes of a target.
+fn bytes_of(size: [u32; 2], format: wgpu::TextureFormat) -> u64 {
+    // A depth format has no block size to copy, and four bytes.
+    u64::from(size[0]) * u64::from(size[1]) * u64::from(format.block_copy_size(None).unwrap_or(4))
+}
+
+fn plural(count: u64, of: &str) -> String {
+    format!("{count} {of}{}", if count == 1 { "" } else { "s" })
+}
+
+/// The steps of a frame of this plan, in order; `counts` are its spheres, cylinders and triangles. Post effects that are left out
+/// are not among them: what is listed is known to the style alone.
+pub fn steps(gpu: &Gpu, plan: &Plan, input: &FrameInput<'_>, counts: [u64; 3]) -> Vec<Step> {
+    let size = input.drawn_size();
+    let mut steps = shadow_steps(plan, input);
+
+    let [spheres, cylinders, triangles] = counts;
+    let seen: Vec<String> = [(spheres, "sphere"), (cylinders, "cylinder"), (triangles, "triangle")]
+        .into_iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, of)| plural(count, of))
+        .collect();
+    let seen = if seen.is_empty() { "nothing to see".to_owned() } else { seen.join(", ") };
+    let bytes = bytes_of(size, ID_FORMAT) + bytes_of(size, DEPTH_FORMAT);
+    steps.push(Step::drawn("visibility", size, bytes, format!("{seen}: which of them each pixel sees")));
+    steps.push(if plan.seen.hulls {
+        let reason = "a shader has a hull outline: back faces of enlarged objects, in the same pass";
+        Step { size: None, ..Step::drawn("hull outlines", size, 0, reason) }
+    } else {
+        Step::left_out("hull outlines", "no shader has one")
+    });
+
+    let shaders: Vec<&str> = plan.shade.shaders.iter().map(|needs| SHADERS[needs.shader].name()).collect();
+    let lights = plural(u64::from(plan.shade.lights), "light");
+    let of_effects = match plan.effects.len() {
+        0 => 0,
+        count => bytes_of(size, GEOMETRY_FORMAT) + count.min(2) as u64 * bytes_of(size, COLOR_FORMAT),
+    };
+    let beside = if of_effects > 0 { ", with the surface beside it for post effects" } else { "" };
+    let reason = format!("{} in {lights}, once for each pixel that sees something{beside}", shaders.join(", "));
+    let output = bytes_of(size, if input.wide { OUTPUT_16 } else { OUTPUT_8 });
+    // The picture itself is written by shading where nothing comes after it.
+    let is_last = plan.direct && plan.effects.is_empty();
+    steps.push(Step::drawn("shade", size, of_effects + if is_last { output } else { 0 }, reason));
+
+    for (index, key) in plan.effects.iter().enumerate() {
+        let effect = EFFECTS[key.effect];
+        for pass in effect.passes() {
+            let is_end = pass.target == PassTarget::Picture;
+            let (target, mut bytes) = match pass.target {
+                PassTarget::Own { format, pixels } => {
+                    let target = [0, 1].map(|axis| size[axis].div_ceil(pixels[axis].max(1)));
+                    (target, bytes_of(target, format))
+                }
+                PassTarget::Picture => (size, 0),
+            };
+            if is_end && plan.direct && index + 1 == plan.effects.len() {
+                bytes += output;
+            }
+            steps.push(Step::drawn(pass.name, target, bytes, format!("{} is listed in post_effects", effect.name())));
+        }
+    }
+
+    steps.push(if plan.direct {
+        Step::left_out("resolve", "one sample of 8 bits a channel is written straight away")
+    } else {
+        let reason = match plan.samples {
+            1 => "16 bits a channel are asked for".to_owned(),
+            samples => format!("{samples} samples add up, each through all passes from visibility on"),
+        };
+        Step::drawn("resolve", size, bytes_of(size, light_format(gpu)) + output, reason)
+    });
+    steps
+}
+
+fn shadow_steps(plan: &Plan, input: &FrameInput<'_>) -> Vec<Step> {
+    let size = [plan.map_size; 2];
+    let mut steps = Vec::new();
+    for (number, (light, layer)) in (1..).zip(input.lighting.lights.iter().zip(&plan.shadows.layers)) {
+        let Some(shadow) = light.shadow else { continue };
+        let kind = if shadow.softness_rad > 0.0 { "soft" } else { "hard" };
+        steps.push(match layer {
+            Some(layer) => {
+                let bytes = ShadowMaps::layer_bytes(plan.map_size, *layer == 0);
+                Step::drawn(
+                    "shadow",
+                    size,
+                    bytes,
+                    format!("light {number} casts a {kind} shadow; once for all samples"),
+                )
+            }
+            None => {
+                let reason = "it is within the scene's sphere, or there are too many before it";
+                Step::left_out("shadow", format!("light {number} asks for a {kind} shadow, but {reason}"))
+            }
+        });
+    }
+    if steps.is_empty() {
+        steps.push(Step::left_out("shadow", "no light casts one"));
+    }
+    steps
+}
