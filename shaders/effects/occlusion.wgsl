@@ -200,22 +200,21 @@ fn covered_bits(
         // Its front, and from there along the line of sight to its back, as far as they lie within the radius.
         let across = within(begins, front - begins, 1.0);
         let along = within(front, away, thickness(texel, depth, away));
-        if max(across.y - across.x, along.y - along.x) <= 0.0 { continue; }
+        let is_across = across.y > across.x;
+        let is_along = along.y > along.x;
+        if !is_across && !is_along { continue; }
         let sin_m = slice.sin_n * side;
-        var nearest = 1e30;
-        var farthest = -1e30;
-        if across.y > across.x {
-            let a = light_to_place(mix(begins, front, across.x), normal, to_viewer, slice.cos_n, sin_m);
-            let b = light_to_place(mix(begins, front, across.y), normal, to_viewer, slice.cos_n, sin_m);
-            nearest = min(a, b);
-            farthest = max(a, b);
-        }
-        if along.y > along.x {
-            let a = light_to_place(front + along.x * away, normal, to_viewer, slice.cos_n, sin_m);
-            let b = light_to_place(front + along.y * away, normal, to_viewer, slice.cos_n, sin_m);
-            nearest = min(nearest, min(a, b));
-            farthest = max(farthest, max(a, b));
-        }
+        // Where both are, the one ends where the other begins, but for fronts before the radius.
+        let middle = select(front + along.x * away, mix(begins, front, across.y), is_across);
+        let first_end = select(middle, mix(begins, front, across.x), is_across);
+        let last_end = select(middle, front + along.y * away, is_along);
+        let lights = vec3<f32>(
+            light_to_place(first_end, normal, to_viewer, slice.cos_n, sin_m),
+            light_to_place(middle, normal, to_viewer, slice.cos_n, sin_m),
+            light_to_place(last_end, normal, to_viewer, slice.cos_n, sin_m),
+        );
+        let nearest = min(lights.x, min(lights.y, lights.z));
+        let farthest = max(lights.x, max(lights.y, lights.z));
         // Shares of the whole slice, from the end of the second side.
         let low = (slice.second + select(nearest, -farthest, is_second)) / slice.all;
         let high = (slice.second + select(farthest, -nearest, is_second)) / slice.all;

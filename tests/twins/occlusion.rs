@@ -184,15 +184,16 @@ fn covered_bits(
             };
             let across = within(params.radius, begins, front - begins, 1.0);
             let along = within(params.radius, front, away, thickness);
-            let mut lights = Vec::new();
-            if across[1] > across[0] {
-                lights.extend(across.map(|at| slice.light_to_place(begins.lerp(front, at), side)));
+            let (is_across, is_along) = (across[1] > across[0], along[1] > along[0]);
+            if !is_across && !is_along {
+                continue;
             }
-            if along[1] > along[0] {
-                lights.extend(along.map(|at| slice.light_to_place(front + at * away, side)));
-            }
-            let Some(nearest) = lights.iter().copied().reduce(f64::min) else { continue };
-            let farthest = lights.iter().copied().fold(nearest, f64::max);
+            let middle = if is_across { begins.lerp(front, across[1]) } else { front + along[0] * away };
+            let first_end = if is_across { begins.lerp(front, across[0]) } else { middle };
+            let last_end = if is_along { front + along[1] * away } else { middle };
+            let lights = [first_end, middle, last_end].map(|place| slice.light_to_place(place, side));
+            let nearest = lights.into_iter().fold(f64::INFINITY, f64::min);
+            let farthest = lights.into_iter().fold(0.0, f64::max);
             let (low, high) = if side < 0.0 { (-farthest, -nearest) } else { (nearest, farthest) };
             let bit = |light: f64| ((slice.second + light) / slice.all * 32.0 + noise).clamp(0.0, 32.0) as u32;
             for set in bit(low)..bit(high) {
