@@ -320,7 +320,7 @@ fn hull_outlines_of_solids_have_no_gaps() {
 fn tiles_are_the_picture() {
     let mut facets = cuboid(DVec3::new(1.0, 0.6, 0.8), askew(), DVec3::ZERO);
     facets.extend(cylinder(0.5, 0.9, 48, DMat3::from_rotation_x(1.1), DVec3::new(1.4, 0.5, 0.6)));
-    let style = r##"{"mapping": {"*": "t", "post_effects": ["ao", "lines"]}, "shaders": [{"name": "t", "shader": "toon", "properties":
+    let style = r##"{"camera": {"zoom": 2.5}, "mapping": {"*": "t", "post_effects": ["ao", "lines"]}, "shaders": [{"name": "t", "shader": "toon", "properties":
         {"base_color": "#88bbee", "hull_size": "9pt"}}, {"name": "ao", "shader": "ssaoPost", "properties": {"radius": 0.08}},
         {"name": "lines", "shader": "outlinePost"}], "lights": [{"position": [1, 2, 3], "shadow": "soft"}]}"##;
     // Wider than one tile, and so large that the whole is drawn in tiles.
