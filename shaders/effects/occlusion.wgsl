@@ -27,10 +27,8 @@ struct OcclusionParams {
 }
 
 const PI: f32 = 3.14159265;
-// Pixels along a side of the pattern by which neighbouring pixels look different ways.
-const TILE_PX: i32 = 4;
 // How much thicker than itself a sphere or cylinder is taken, and than its mean a part of a mesh: what hides behind it counts as
-// well. Of 1, 2 and 4 the nearest to rays (ours).
+// well. Of 1 and 2, and 4 for parts, the nearest to rays (ours).
 const THICKER: f32 = 2.0;
 // What rises above a surface's plane by less than this, as a sine, is the plane itself.
 const LEAST_RISE: f32 = 0.01;
@@ -40,7 +38,7 @@ const POINT_BIAS_RADII: f32 = 0.02;
 const PLANE_RADII: f32 = 0.1;
 const LEAST_COSINE: f32 = 0.7;
 
-// Two numbers in 0..1 for a pixel: every pixel of a tile has others, and every sample of a still.
+// Two numbers in 0..1 for a pixel: others for each of a square of 4x4, and for each sample of a still.
 fn occlusion_noise(at: vec2<i32>) -> vec2<f32> {
     let own = vec2<u32>(at + vec2<i32>(view.tile_origin_px)) & vec2<u32>(3u);
     // Bayer's order: pixels that are neighbours differ most.
@@ -48,7 +46,8 @@ fn occlusion_noise(at: vec2<i32>) -> vec2<f32> {
     let order = ((a & 1u) << 3u) | ((own.y & 1u) << 2u) | (a & 2u) | ((own.y & 2u) >> 1u);
     let turned = (order * 7u + 3u) & 15u;
     let phase = view.sample_rotation_rad / (2.0 * PI);
-    return fract((vec2<f32>(f32(order), f32(turned)) + 0.5) / 16.0 + phase * vec2<f32>(1.0, 0.618034 * 16.0));
+    // Of sample i of n: i / n, and i times the golden ratio.
+    return fract((vec2<f32>(f32(order), f32(turned)) + 0.5) / 16.0 + phase * vec2<f32>(1.0, 0.618034 / view.sample_weight));
 }
 
 fn is_surface(texel: vec4<u32>) -> bool {
@@ -96,8 +95,7 @@ fn thickness(texel: vec4<u32>, depth: f32, away: vec3<f32>) -> f32 {
     if !OCCLUSION_THIN { return 1e30; }
     if is_part(texel.w) {
         // Its mean thickness, whichever way it is looked through.
-        let row = 4u * (texel.w & INDEX_MASK) + 3u;
-        let look = textureLoad(mesh_parts, vec2<u32>(row % 2048u, row / 2048u), 0);
+        let look = object_texel(mesh_parts, 4u * (texel.w & INDEX_MASK) + 3u);
         return THICKER * unpack2x16float(look.z).y * bitcast<f32>(look.w);
     }
     let bend_px = unpack2x16float(texel.z).x;
@@ -164,7 +162,6 @@ fn covered_bits(
     own: vec2<i32>, own_id: u32, p: vec3<f32>, normal: vec3<f32>, to_viewer: vec3<f32>, way: vec2<f32>, radius_px: f32, noise: f32,
     slice: Slice,
 ) -> u32 {
-    let radius = occlusion_params.radius;
     var bits = 0u;
     // What the last tap saw: between two taps of one object its surface goes on.
     var last_id = own_id;
@@ -246,7 +243,7 @@ fn shuffled(offset: vec3<f32>, random: vec3<f32>, noise: f32) -> vec3<f32> {
 fn hidden_points(own: vec2<i32>, texel: vec4<u32>) -> f32 {
     let g = unpack_geometry(texel);
     let p = position_at(own, g.depth);
-    let radius = occlusion_params.radius;
+    let radius = min(occlusion_params.radius, occlusion_params.reach_px * pixel_world(view, g.depth));
     let count = f32(occlusion_params.samples);
     let noise = occlusion_noise(own);
     let random = sphere_tap(16.0 * noise.x - 0.5, 16.0);

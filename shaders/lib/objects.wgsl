@@ -33,14 +33,6 @@ struct Material {
     index: u32,
 }
 
-// Objects lie in textures, row after row, one texel for each 16 bytes: storage buffers end at 128 MiB on many adapters,
-// and a software adapter reads them lane by lane.
-const OBJECT_ROW: u32 = 2048u;
-
-fn object_texel(objects: texture_2d<u32>, texel: u32) -> vec4<u32> {
-    return textureLoad(objects, vec2<u32>(texel % OBJECT_ROW, texel / OBJECT_ROW), 0);
-}
-
 fn atom_at(index: u32) -> Atom {
     let place = object_texel(atoms, 2u * index);
     let look = object_texel(atoms, 2u * index + 1u);

@@ -38,6 +38,9 @@ const NOT_DRAWN: [(&str, Role, &str, &[Param]); 2] = [
     ("dofPost", Role::PostEffect, "Blurs what is out of focus.", effects::focus::PARAMS),
 ];
 
+/// Why a frame lacks an effect that its style does not ask for.
+const NOT_LISTED: &str = "post_effects does not list it";
+
 /// Types of objects that this version draws.
 pub const DRAWN_KINDS: &[ObjectKind] = &[ObjectKind::Atom, ObjectKind::Connector, ObjectKind::Mesh];
 
@@ -314,21 +317,23 @@ impl Engine {
         })?;
         let (Some(content), Some(drawn)) = (&self.content, &self.drawn) else { return Err(GpuError::NothingToDraw) };
         let camera = content.camera.turned(request.size, request.turn_deg.to_radians());
-        // For each effect why it is left out, where it is listed and where not.
-        let mut reasons: Vec<Option<&str>> = vec![Some("post_effects does not list it"); EFFECTS.len()];
+        let mut is_seen = [false; EFFECTS.len()];
+        let mut left_out = Vec::new();
         with_effects(&content.style, &drawn.lengths, &camera, request.size[1], |effect, values, context| {
-            reasons[effect] = EFFECTS[effect].changes_nothing(values, context);
+            is_seen[effect] = true;
+            let reason = EFFECTS[effect].changes_nothing(values, context);
+            left_out.extend(reason.map(|reason| Step::left_out(EFFECTS[effect].name(), reason)));
         });
+        let unseen = EFFECTS.iter().zip(is_seen).filter(|(_, is_seen)| !is_seen);
+        left_out.extend(unseen.map(|(effect, _)| Step::left_out(effect.name(), NOT_LISTED)));
         let is_listed = |name: &str| {
             content.style.listed_effects.iter().any(|listed| content.style.shaders[listed.index].shader == name)
         };
-        let registered = EFFECTS.iter().zip(&reasons).filter_map(|(effect, why)| Some((effect.name(), (*why)?)));
         let not_drawn = NOT_DRAWN.iter().filter(|(_, role, ..)| *role == Role::PostEffect);
-        let not_drawn = not_drawn.map(|(name, ..)| match is_listed(name) {
-            true => (*name, "the reference renderer alone draws it so far"),
-            false => (*name, "post_effects does not list it"),
-        });
-        let left_out = registered.chain(not_drawn).map(|(name, reason)| Step::left_out(name, reason));
+        left_out.extend(not_drawn.map(|(name, ..)| match is_listed(name) {
+            true => Step::left_out(name, "the reference renderer alone draws it so far"),
+            false => Step::left_out(name, NOT_LISTED),
+        }));
         Ok(steps.into_iter().chain(left_out).collect())
     }
 

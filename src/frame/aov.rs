@@ -70,6 +70,7 @@ pub fn aov_module(orthographic: bool, meshes: bool) -> Module {
     let mut module = Module::new(&[
         wgsl!("lib/view.wgsl"),
         wgsl!("lib/ids.wgsl"),
+        wgsl!("lib/texels.wgsl"),
         wgsl!("lib/objects.wgsl"),
         wgsl!("lib/intersect.wgsl"),
         if meshes { wgsl!("lib/mesh.wgsl") } else { wgsl!("lib/mesh_none.wgsl") },

@@ -1,6 +1,6 @@
 //! The passes of a frame with their reasons, sizes and bytes, told without drawing any.
 
-use super::shadow::ShadowMaps;
+use super::shadow::{MAX_SHADOWS, ShadowMaps};
 use super::{FrameInput, OUTPUT_8, OUTPUT_16, Plan, light_format};
 use super::{post::COLOR_FORMAT, post::GEOMETRY_FORMAT, visibility::DEPTH_FORMAT, visibility::ID_FORMAT};
 use crate::effects::{EFFECTS, PassTarget};
@@ -126,7 +126,10 @@ fn shadow_steps(plan: &Plan, input: &FrameInput<'_>) -> Vec<Step> {
                 )
             }
             None => {
-                let reason = "it is within the scene's sphere, or there are too many before it";
+                let reason = match plan.shadows.views.len() < MAX_SHADOWS {
+                    true => "it is within the scene's sphere",
+                    false => "as many as can be cast theirs already",
+                };
                 Step::left_out("shadow", format!("light {number} asks for a {kind} shadow, but {reason}"))
             }
         });

@@ -67,6 +67,9 @@ gpu_struct! {
     }
 }
 
+/// Thicker than any radius reaches, and a half float.
+const MOST_THICKNESS_RADII: f32 = 6e4;
+
 impl MeshPart {
     /// A part of this placement, colour and material.
     pub fn new(world_from_shape: &Affine3A, color: [u32; 2], material: u32, shape: &Shape) -> MeshPart {
@@ -78,7 +81,9 @@ impl MeshPart {
         };
         let scale = matrix.determinant().abs().cbrt();
         let radius = shape.sphere.radius;
-        let thickness = half::f16::from_f32(shape.thickness / radius.max(f32::MIN_POSITIVE));
+        // Shaders need not know infinity.
+        let thickness =
+            half::f16::from_f32((shape.thickness / radius.max(f32::MIN_POSITIVE)).min(MOST_THICKNESS_RADII));
         let look = material & 0xffff | u32::from(thickness.to_bits()) << 16;
         MeshPart { row_x: row(0), row_y: row(1), row_z: row(2), color, look, radius: radius * scale }
     }

@@ -356,6 +356,7 @@ pub fn shade_module(key: &ShadeKey) -> Module {
     let mut module = Module::new(&[
         wgsl!("lib/view.wgsl"),
         wgsl!("lib/ids.wgsl"),
+        wgsl!("lib/texels.wgsl"),
         wgsl!("lib/objects.wgsl"),
         wgsl!("lib/intersect.wgsl"),
         if key.meshes { wgsl!("lib/mesh.wgsl") } else { wgsl!("lib/mesh_none.wgsl") },

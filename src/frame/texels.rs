@@ -4,7 +4,7 @@
 
 use crate::gpu::Gpu;
 
-/// Texels in a row of these textures; `OBJECT_ROW` in `shaders/lib/objects.wgsl`.
+/// Texels in a row of these textures; `OBJECT_ROW` in `shaders/lib/texels.wgsl`.
 pub const OBJECT_ROW: u32 = 2048;
 
 /// A texel holds four 32-bit words.

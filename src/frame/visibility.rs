@@ -387,6 +387,7 @@ pub fn mesh_module(key: VisibilityKey, shell: bool, numbered: bool) -> Module {
     }
     module.add(wgsl!("lib/view.wgsl"));
     module.add(wgsl!("lib/ids.wgsl"));
+    module.add(wgsl!("lib/texels.wgsl"));
     module.add(wgsl!("lib/objects.wgsl"));
     module.add(wgsl!("lib/mesh.wgsl"));
     module.add(if key.light { wgsl!("lib/seen_light_mesh.wgsl") } else { wgsl!("lib/seen_camera_mesh.wgsl") });
@@ -412,6 +413,7 @@ pub fn visibility_module(atoms: bool, key: VisibilityKey) -> Module {
     let mut module = Module::new(&[
         wgsl!("lib/view.wgsl"),
         wgsl!("lib/ids.wgsl"),
+        wgsl!("lib/texels.wgsl"),
         wgsl!("lib/objects.wgsl"),
         wgsl!("lib/intersect.wgsl"),
         wgsl!("lib/hull.wgsl"),

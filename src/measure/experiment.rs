@@ -116,6 +116,14 @@ pub struct Entry {
     pub size: [u32; 2],
 }
 
+/// The settings of an entry, from a JSON object.
+pub fn settings(of: Json) -> Map<String, Json> {
+    match of {
+        Json::Object(settings) => settings,
+        _ => Map::new(),
+    }
+}
+
 /// A figure of a picture beside its metrics: what it is called, and its value.
 pub type Figure = (&'static str, f64);
 

@@ -73,6 +73,7 @@ fn what_is_left_out_says_why() {
         "light 1 asks for a hard shadow, but it is within the scene's sphere",
         "hull outlines        no shader has one",
         "resolve              one sample of 8 bits a channel is written straight away",
+        "ssaoPost             its intensity is 0",
         "ssaoPost             its radius is less than 1.5 pixels anywhere",
         "outlinePost          its lines have no width",
         "dofPost              the reference renderer alone draws it so far",

@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use serde_json::json;
 
 use crate::engine::Request;
-use crate::measure::experiment::{Case, ChartKind, Entry, ErrorKind, Experiment, MeasureError, Setup};
+use crate::measure::experiment::{Case, ChartKind, Entry, ErrorKind, Experiment, MeasureError, Setup, settings};
 use crate::measure::page::short;
 use crate::measure::run::{Row, geometric_mean};
 use crate::measure::stage::{Look, Stage, device, scene};
@@ -247,12 +247,12 @@ impl Experiment for Geometry {
             }
             for (size, truth) in sizes.iter().zip(&truths) {
                 for (method, triangles, stage) in &kinds {
-                    let settings = json!({ "size": size, "samples": SAMPLES });
+                    let settings = settings(json!({ "size": size, "samples": SAMPLES }));
                     cases.push(Case {
                         entry: Entry {
                             scene: format!("{count} spheres"),
                             method: method.clone(),
-                            settings: settings.as_object().cloned().unwrap_or_default(),
+                            settings,
                             series: method.clone(),
                             point: format!("{}x{}", size[0], size[1]),
                             extent: *triangles as f64,

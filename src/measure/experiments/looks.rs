@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde_json::json;
 
 use crate::engine::Request;
-use crate::measure::experiment::{Case, ChartKind, Entry, Experiment, MeasureError, Setup};
+use crate::measure::experiment::{Case, ChartKind, Entry, Experiment, MeasureError, Setup, settings};
 use crate::measure::page::short;
 use crate::measure::run::Row;
 use crate::measure::stage::{Look, Stage, device, scene, shipped_scene};
@@ -115,12 +115,12 @@ impl Experiment for Looks {
             for shipped in LOOKS {
                 let look = Look::shipped(shipped)?;
                 for &size in &sizes {
-                    let settings = json!({ "look": shipped.name, "atoms": num_atoms, "size": size });
+                    let settings = settings(json!({ "look": shipped.name, "atoms": num_atoms, "size": size }));
                     cases.push(Case {
                         entry: Entry {
                             scene: name.clone(),
                             method: "gpu".to_owned(),
-                            settings: settings.as_object().cloned().unwrap_or_default(),
+                            settings,
                             series: shipped.name.to_owned(),
                             point: format!("{}x{}", size[0], size[1]),
                             extent: num_atoms as f64,

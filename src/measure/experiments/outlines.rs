@@ -5,7 +5,7 @@ use std::rc::Rc;
 use serde_json::json;
 
 use crate::engine::Request;
-use crate::measure::experiment::{Case, ChartKind, Entry, ErrorKind, Experiment, Judge, MeasureError, Setup};
+use crate::measure::experiment::{Case, ChartKind, Entry, ErrorKind, Experiment, Judge, MeasureError, Setup, settings};
 use crate::measure::metrics::LineErrors;
 use crate::measure::page::short;
 use crate::measure::run::{Row, geometric_mean};
@@ -180,12 +180,12 @@ impl Experiment for Outlines {
                         Lines::Boundary | Lines::Crease => truth(kind)?,
                         _ => Rc::clone(&silhouettes),
                     };
-                    let settings = json!({ "width": format!("{} px", width.0) });
+                    let settings = settings(json!({ "width": format!("{} px", width.0) }));
                     cases.push(Case {
                         entry: Entry {
                             scene: name.to_owned(),
                             method: method.to_owned(),
-                            settings: settings.as_object().cloned().unwrap_or_default(),
+                            settings,
                             series: method.to_owned(),
                             point: width.0.to_string(),
                             extent: width.0,

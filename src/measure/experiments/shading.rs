@@ -5,7 +5,7 @@ use std::rc::Rc;
 use serde_json::json;
 
 use crate::engine::Request;
-use crate::measure::experiment::{Case, ChartKind, Entry, ErrorKind, Experiment, MeasureError, Setup};
+use crate::measure::experiment::{Case, ChartKind, Entry, ErrorKind, Experiment, MeasureError, Setup, settings};
 use crate::measure::page::short;
 use crate::measure::run::{Row, geometric_mean};
 use crate::measure::stage::{Look, Stage, device, shipped_scene};
@@ -107,12 +107,12 @@ impl Experiment for Shading {
                 let look = Look::shipped(shipped)?.without_effects();
                 let truth = look.exact(&scene, Request::new(size, truth_samples(setup)));
                 for &samples in samples(setup) {
-                    let settings = json!({ "look": shipped.name, "samples": samples });
+                    let settings = settings(json!({ "look": shipped.name, "samples": samples }));
                     cases.push(Case {
                         entry: Entry {
                             scene: name.to_owned(),
                             method: "gpu".to_owned(),
-                            settings: settings.as_object().cloned().unwrap_or_default(),
+                            settings,
                             series: shipped.name.to_owned(),
                             point: samples.to_string(),
                             extent: f64::from(samples),

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use serde_json::json;
 
 use crate::engine::{Request, ShadowFilter, ShadowQuality};
-use crate::measure::experiment::{Case, ChartKind, Entry, ErrorKind, Experiment, MeasureError, Setup};
+use crate::measure::experiment::{Case, ChartKind, Entry, ErrorKind, Experiment, MeasureError, Setup, settings};
 use crate::measure::page::short;
 use crate::measure::run::{Row, geometric_mean};
 use crate::measure::stage::{GpuFrame, Look, Stage, device, shipped_scene};
@@ -125,13 +125,13 @@ impl Experiment for Shadows {
                 for map_size in MAP_SIZES {
                     let quality = ShadowQuality { map_size, soft_taps: kind.taps, filter: kind.filter };
                     let texels = quality.map_size(gpu, size[1]);
-                    let settings = json!({ "texels": texels });
+                    let settings = settings(json!({ "texels": texels }));
                     let frame = stage.frame(&looks[usize::from(kind.soft)], Request::new(size, SAMPLES));
                     cases.push(Case {
                         entry: Entry {
                             scene: name.to_owned(),
                             method: kind.name.to_owned(),
-                            settings: settings.as_object().cloned().unwrap_or_default(),
+                            settings,
                             series: kind.name.to_owned(),
                             point: map_size.map_or(TAKEN.to_owned(), |side| side.to_string()),
                             extent: f64::from(texels),

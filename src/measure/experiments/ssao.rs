@@ -6,7 +6,7 @@ use std::rc::Rc;
 use serde_json::json;
 
 use crate::engine::{EffectForm, Request};
-use crate::measure::experiment::{Case, ChartKind, Entry, ErrorKind, Experiment, Judge, MeasureError, Setup};
+use crate::measure::experiment::{Case, ChartKind, Entry, ErrorKind, Experiment, Judge, MeasureError, Setup, settings};
 use crate::measure::page::short;
 use crate::measure::run::{Row, geometric_mean};
 use crate::measure::stage::{GpuFrame, Look, Stage, device, scene, shipped_scene};
@@ -271,13 +271,13 @@ impl Experiment for Ssao {
             let truth = look(stand, None)?.exact(&scene, wide(1));
             for kind in &KINDS {
                 for &samples in kind.samples {
-                    let settings = json!({ "samples": samples });
+                    let settings = settings(json!({ "samples": samples }));
                     let frame = stage.frame(&look(stand, Some((kind, samples)))?, wide(1));
                     cases.push(Case {
                         entry: Entry {
                             scene: stand.name.to_owned(),
                             method: kind.name.to_owned(),
-                            settings: settings.as_object().cloned().unwrap_or_default(),
+                            settings,
                             series: kind.name.to_owned(),
                             point: samples.to_string(),
                             extent: f64::from(samples),

@@ -13,7 +13,7 @@ use glam::{Vec2, Vec3};
 use serde_json::json;
 
 use crate::measure::experiment::{
-    Case, ChartKind, Entry, ErrorKind, Experiment, GoOn, MeasureError, Setup, Subject, Truth,
+    Case, ChartKind, Entry, ErrorKind, Experiment, GoOn, MeasureError, Setup, Subject, Truth, settings,
 };
 use crate::measure::page::short;
 use crate::measure::run::{Row, geometric_mean};
@@ -332,12 +332,12 @@ impl Experiment for ToonEdges {
             };
             for (step, method) in STEP_KINDS {
                 for &side in sides {
-                    let settings = json!({ "samples": side * side, "steps": STEPS as u32 });
+                    let settings = settings(json!({ "samples": side * side, "steps": STEPS as u32 }));
                     cases.push(Case {
                         entry: Entry {
                             scene: name.to_owned(),
                             method: method.to_owned(),
-                            settings: settings.as_object().cloned().unwrap_or_default(),
+                            settings,
                             series: method.to_owned(),
                             point: (side * side).to_string(),
                             extent: f64::from(side * side),

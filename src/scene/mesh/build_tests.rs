@@ -86,6 +86,8 @@ fn a_cube_has_24_vertices_however_it_was_written() {
         }
         assert!((volume(&shape) - 8.0).abs() < 1e-5);
         assert!((shape.sphere.radius - 3.0_f32.sqrt()).abs() < 1e-3);
+        // Four times 8 over 24.
+        assert!((shape.thickness - 4.0 / 3.0).abs() < 1e-5);
     }
 }
 
@@ -491,4 +493,11 @@ fn any_mesh_comes_out_sound() {
         }
     }
     assert!(num_built > 1500, "{num_built}");
+}
+
+#[test]
+fn an_open_shape_has_no_thickness() {
+    let raw = cube();
+    let open = RawShape { triangles: raw.triangles[2..].to_vec(), ..raw };
+    assert_eq!(alone(open).0.thickness, f32::INFINITY);
 }
