@@ -38,20 +38,8 @@ const POINT_BIAS_RADII: f32 = 0.02;
 const PLANE_RADII: f32 = 0.1;
 const LEAST_COSINE: f32 = 0.7;
 
-// Two numbers in 0..1 for a pixel: others for each of a square of 4x4, and for each sample of a still.
-fn occlusion_noise(at: vec2<i32>) -> vec2<f32> {
-    let own = vec2<u32>(at + vec2<i32>(view.tile_origin_px)) & vec2<u32>(3u);
-    // Bayer's order: pixels that are neighbours differ most.
-    let a = own.x ^ own.y;
-    let order = ((a & 1u) << 3u) | ((own.y & 1u) << 2u) | (a & 2u) | ((own.y & 2u) >> 1u);
-    let turned = (order * 7u + 3u) & 15u;
-    let phase = view.sample_rotation_rad / (2.0 * PI);
-    // Of sample i of n: i / n, and i times the golden ratio.
-    return fract((vec2<f32>(f32(order), f32(turned)) + 0.5) / 16.0 + phase * vec2<f32>(1.0, 0.618034 / view.sample_weight));
-}
-
 fn is_surface(texel: vec4<u32>) -> bool {
-    // A hull outline is a line, at depth 0: it neither receives nor casts.
+    // A hull outline is a line, at a depth below 0: it neither receives nor casts.
     return texel.w != 0u && bitcast<f32>(texel.x) > 0.0;
 }
 
@@ -109,7 +97,7 @@ fn horizons(own: vec2<i32>, texel: vec4<u32>) -> f32 {
     let to_viewer = select(normalize(-p), vec3<f32>(0.0, 0.0, 1.0), ORTHOGRAPHIC);
     let radius = occlusion_params.radius;
     let radius_px = min(radius / pixel_world(view, g.depth), occlusion_params.reach_px);
-    let noise = occlusion_noise(own);
+    let noise = pixel_noise(own);
     var blocked = 0.0;
     var all = 0.0;
     for (var index = 0u; index < occlusion_params.slices; index++) {
@@ -245,7 +233,7 @@ fn hidden_points(own: vec2<i32>, texel: vec4<u32>) -> f32 {
     let p = position_at(own, g.depth);
     let radius = min(occlusion_params.radius, occlusion_params.reach_px * pixel_world(view, g.depth));
     let count = f32(occlusion_params.samples);
-    let noise = occlusion_noise(own);
+    let noise = pixel_noise(own);
     let random = sphere_tap(16.0 * noise.x - 0.5, 16.0);
     var hidden = 0.0;
     var counted = 0.0;

@@ -54,7 +54,7 @@ const MOST_RADIUS: f32 = 63.0;
 
 // A hull outline is drawn already, and no surface.
 fn is_line(texel: vec4<u32>) -> bool {
-    return texel.w != 0u && texel.x == 0u;
+    return texel.w != 0u && bitcast<f32>(texel.x) <= 0.0;
 }
 
 // A surface beyond its own pixel, on a neighbour's ray.
@@ -447,7 +447,7 @@ fn cover_of(own: vec2<i32>, least: u32) -> Cover {
     let seen = textureLoad(geometry, own, 0);
     let depth = select(bitcast<f32>(seen.x), NOWHERE, seen.w == 0u);
     var cover = Cover(0.0, 0.0, 0.0, 1.0, own);
-    var rows = select(2 * reach + 2, 2, bitcast<u32>(depth) <= least);
+    var rows = select(2 * reach + 2, 2, bitcast<u32>(max(depth, 0.0)) <= least);
     for (var row = 0; row < rows; row++) {
         // 0, one up, one down, two up ...
         let down = ((row + 1) >> 1u) * select(-1, 1, (row & 1) == 0);

@@ -1,7 +1,7 @@
 // The surface of a pixel as the shading pass leaves it for post effects: one texel of four words.
 
 struct Geometry {
-    // -z_view.
+    // -z_view, or z_view of a hull outline, which is a line and no surface.
     depth: f32,
     // Unit, in view space, turned to the viewer.
     normal_view: vec3<f32>,

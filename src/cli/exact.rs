@@ -14,7 +14,7 @@ use super::render::{Args, cannot_write, files_read, progress_bar, rounded};
 use super::{Failure, answer, inputs, tell};
 use crate::config::{Notice, Style};
 use crate::engine::Request;
-use crate::engine::exact::{DRAWN_EFFECTS, Exact, ExactError};
+use crate::engine::exact::{Exact, ExactError};
 use crate::scene::{LoadOptions, RowsHeader, write_png_rows};
 
 /// Samples of a still.
@@ -100,7 +100,6 @@ fn draw(args: &Args, mut style: Style, loaded: Loaded) -> Result<(), Failure> {
 /// Leaves of a style's warnings those that hold for the reference renderer, too.
 pub(super) fn keep_warnings(style: &mut Style) {
     style.warnings.retain(|warning| match &warning.notice {
-        Notice::EffectNotDrawn { name } => !DRAWN_EFFECTS.contains(&name.as_str()),
         Notice::PropertyNotDrawn { name } => name != "opacity",
         _ => true,
     });

@@ -41,6 +41,8 @@ pub enum Kind {
     Numbers {
         /// How many there must be.
         len: usize,
+        /// Whether none may be below the one before it.
+        ascending: bool,
     },
     /// Three numbers.
     Vector,
@@ -180,7 +182,7 @@ impl Param {
 
     /// A list of numbers, of any length unless `of_len` says so.
     pub const fn numbers(name: &'static str, default: &'static [f64]) -> Self {
-        Self::new(name, Kind::Numbers { len: 0 }, Default::Numbers(default))
+        Self::new(name, Kind::Numbers { len: 0, ascending: false }, Default::Numbers(default))
     }
 
     /// Three numbers.
@@ -224,7 +226,15 @@ impl Param {
 
     /// How many numbers the list must hold.
     pub const fn of_len(mut self, len: usize) -> Self {
-        self.kind = Kind::Numbers { len };
+        self.kind = Kind::Numbers { len, ascending: false };
+        self
+    }
+
+    /// Numbers of the list must not fall.
+    pub const fn ascending(mut self) -> Self {
+        if let Kind::Numbers { len, .. } = self.kind {
+            self.kind = Kind::Numbers { len, ascending: true };
+        }
         self
     }
 
@@ -263,7 +273,7 @@ impl Param {
             (Kind::Color, Default::Color(color)) => Ok(Value::Color(color)),
             (Kind::BaseColor, Default::BaseColor(color)) => Ok(Value::BaseColor(color)),
             (Kind::Boolean | Kind::BooleanOrText, Default::Boolean(value)) => Ok(Value::Boolean(value)),
-            (Kind::Numbers { len }, Default::Numbers(list)) if len == 0 || list.len() == len => {
+            (Kind::Numbers { len, .. }, Default::Numbers(list)) if len == 0 || list.len() == len => {
                 Ok(Value::Numbers(list.to_vec()))
             }
             (Kind::Vector, Default::Vector(vector)) => Ok(Value::Vector(vector)),
@@ -327,8 +337,11 @@ impl Param {
             Kind::BaseColor => format!("{}, or a colour", words(&BaseColor::NAMES)),
             Kind::Choice(of) => format!("one of {}", words(of)),
             Kind::Boolean | Kind::BooleanOrText => "`true` or `false`".to_owned(),
-            Kind::Numbers { len: 0 } => numbers("a list of numbers"),
-            Kind::Numbers { len } => numbers(&format!("a list of {len} numbers")),
+            Kind::Numbers { len: 0, .. } => numbers("a list of numbers"),
+            Kind::Numbers { len, ascending } => {
+                let order = if ascending { ", none below the one before it" } else { "" };
+                numbers(&format!("a list of {len} numbers")) + order
+            }
             Kind::Vector => numbers("three numbers"),
         };
         let default = match self.default {

@@ -212,7 +212,7 @@ fn read(param: &Param, node: &Node, with_hints: bool) -> Result<Value, Wrong> {
         },
         Kind::Choice(of) => choice(param, of, node).map(Value::Choice),
         Kind::Boolean | Kind::BooleanOrText => boolean(param, node).map(Value::Boolean),
-        Kind::Numbers { len } => numbers(param, len, node).map(Value::Numbers),
+        Kind::Numbers { len, ascending } => numbers(param, len, ascending, node).map(Value::Numbers),
         Kind::Vector => vector(param, node).map(Value::Vector),
     }
 }
@@ -387,7 +387,7 @@ fn color_of_shares(value: &Value, node: &Node) -> Option<String> {
 }
 
 /// [Prost2016, Table 1] nests its one list of `layers` in another.
-fn numbers(param: &Param, len: usize, node: &Node) -> Result<Vec<f64>, Wrong> {
+fn numbers(param: &Param, len: usize, ascending: bool, node: &Node) -> Result<Vec<f64>, Wrong> {
     let expected = match len {
         0 => "a list of numbers".to_owned(),
         len => format!("a list of {len} numbers"),
@@ -401,7 +401,16 @@ fn numbers(param: &Param, len: usize, node: &Node) -> Result<Vec<f64>, Wrong> {
     }
     match &inner.value {
         Tree::List(items) if len == 0 || items.len() == len => {
-            items.iter().map(|item| number(param, item, &expected)).collect()
+            let list: Result<Vec<f64>, Wrong> = items.iter().map(|item| number(param, item, &expected)).collect();
+            let list = list?;
+            let falls = list.windows(2).zip(&items[1..]).find(|(pair, _)| ascending && pair[1] < pair[0]);
+            match falls {
+                Some((pair, item)) => {
+                    let allowed = format!("be {} or more, as the number before it is", pair[0]);
+                    Err((item.span, out_of_range(param, pair[1], allowed)))
+                }
+                None => Ok(list),
+            }
         }
         _ => Err((inner.span, wrong_type(param.name, &expected, inner))),
     }

@@ -12,6 +12,33 @@ pub mod outline;
 use crate::config::param::{Length, Param, Values};
 use crate::gpu::{StructInfo, Wgsl};
 
+/// Where a scene lies before a camera.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Depths {
+    /// Whether the camera is orthographic.
+    pub orthographic: bool,
+    /// Nearest depth that is drawn.
+    pub near: f64,
+    /// Depth of the middle of the scene's sphere.
+    pub middle: f64,
+    /// Radius of the scene's sphere.
+    pub radius: f64,
+    /// Scene units of a pixel at the middle.
+    pub pixel_world: f64,
+}
+
+impl Depths {
+    /// Least depth at which anything of the scene is seen.
+    pub fn front(&self) -> f64 {
+        (self.middle - self.radius).max(self.near)
+    }
+
+    /// Greatest depth of the scene.
+    pub fn back(&self) -> f64 {
+        self.middle + self.radius
+    }
+}
+
 /// What an effect needs to know of scene and picture to turn its values into numbers.
 #[derive(Clone, Copy)]
 pub struct EffectContext<'a> {
@@ -21,6 +48,8 @@ pub struct EffectContext<'a> {
     pub world: &'a dyn Fn(Length) -> f64,
     /// Scene units of a pixel at the nearest depth that is drawn.
     pub least_pixel_world: f64,
+    /// Where the scene lies.
+    pub depths: Depths,
 }
 
 /// Where a pass of an effect draws.
@@ -58,16 +87,16 @@ pub trait PostEffect: Sync {
     fn doc(&self) -> &'static str;
     /// Its parameters.
     fn params(&self) -> &'static [Param];
-    /// WGSL that its entries need, its own file last.
-    fn wgsl(&self) -> &'static [Wgsl];
+    /// WGSL that the entries of its passes need with such features, its own file last.
+    fn wgsl(&self, features: u32) -> &'static [Wgsl];
     /// The WGSL struct of its parameters.
     fn params_info(&self) -> StructInfo;
     /// The bytes of that struct.
     fn uniform(&self, values: &Values, context: &EffectContext<'_>) -> Vec<u8>;
     /// How far what a pixel sees changes others, in pixels.
     fn reach_px(&self, values: &Values, context: &EffectContext<'_>) -> u32;
-    /// Its passes in order.
-    fn passes(&self) -> &'static [EffectPass];
+    /// Its passes with such features, in order.
+    fn passes(&self, features: u32) -> &'static [EffectPass];
     /// Why such values change nothing in the picture, if so: the effect is then left out.
     fn changes_nothing(&self, _values: &Values, _context: &EffectContext<'_>) -> Option<&'static str> {
         None
@@ -83,7 +112,7 @@ pub trait PostEffect: Sync {
 }
 
 /// All post effects, in the order of their stages.
-pub const EFFECTS: &[&dyn PostEffect] = &[&occlusion::AmbientOcclusion, &outline::Outline];
+pub const EFFECTS: &[&dyn PostEffect] = &[&occlusion::AmbientOcclusion, &outline::Outline, &focus::Focus];
 
 /// Place in [`EFFECTS`] of a name.
 pub fn effect_index(name: &str) -> Option<usize> {

@@ -92,8 +92,8 @@ impl PostEffect for AmbientOcclusion {
     fn params(&self) -> &'static [Param] {
         PARAMS
     }
-    fn wgsl(&self) -> &'static [Wgsl] {
-        const FILES: &[Wgsl] = &[wgsl!("lib/texels.wgsl"), wgsl!("effects/occlusion.wgsl")];
+    fn wgsl(&self, _features: u32) -> &'static [Wgsl] {
+        const FILES: &[Wgsl] = &[wgsl!("lib/noise.wgsl"), wgsl!("lib/texels.wgsl"), wgsl!("effects/occlusion.wgsl")];
         FILES
     }
     fn params_info(&self) -> StructInfo {
@@ -117,7 +117,7 @@ impl PostEffect for AmbientOcclusion {
     fn reach_px(&self, values: &Values, context: &EffectContext<'_>) -> u32 {
         farthest_px(values, context).ceil() as u32 + values.count("blur")
     }
-    fn passes(&self) -> &'static [EffectPass] {
+    fn passes(&self, _features: u32) -> &'static [EffectPass] {
         const PASSES: &[EffectPass] = &[
             EffectPass {
                 name: "occlusion",

@@ -106,7 +106,7 @@ impl PostEffect for Outline {
     fn params(&self) -> &'static [Param] {
         PARAMS
     }
-    fn wgsl(&self) -> &'static [Wgsl] {
+    fn wgsl(&self, _features: u32) -> &'static [Wgsl] {
         const FILES: &[Wgsl] = &[wgsl!("effects/outline.wgsl")];
         FILES
     }
@@ -135,7 +135,7 @@ impl PostEffect for Outline {
         // Seeds lie between a pixel and the next one, whose colour is taken at their borders.
         widest_px(values, context).ceil() as u32 + 3
     }
-    fn passes(&self) -> &'static [EffectPass] {
+    fn passes(&self, _features: u32) -> &'static [EffectPass] {
         const fn own(format: wgpu::TextureFormat, pixels: [u32; 2]) -> PassTarget {
             PassTarget::Own { format, pixels }
         }

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3, Vec3};
 
-use super::{Content, Request, Resolved, effects, resolve};
-use crate::config::{Length, Style, Value, Values};
+use super::{Content, Request, Resolved, resolve, with_effects};
+use crate::config::Style;
 use crate::effects::EFFECTS;
-use crate::effects::focus::FOCUS;
+use crate::effects::focus::Circles;
 use crate::effects::outline::OutlineParams;
 use crate::frame::objects::DrawList;
 use crate::frame::{MAX_LIGHTS, Materials};
@@ -18,9 +18,6 @@ use crate::reference::{
 };
 use crate::scene::{Camera, Image, Pixels, Scene, srgb_from_linear};
 use crate::shading::{SHADERS, basic::BasicMaterial, toon::ToonMaterial};
-
-/// Post effects that the reference alone draws, by their names in style files.
-pub const DRAWN_EFFECTS: &[&str] = &["dofPost"];
 
 /// Draws stills of one scene in one style, on all cores.
 pub struct Exact {
@@ -98,29 +95,31 @@ impl Exact {
         let optics = Optics::new(&camera, request.size);
         let materials = shades(&materials, &content.style, &drawn.used);
         let world = world(list.unwrap_or_default(), &camera, content, &materials, &optics);
-        let effect = |name: &str| {
-            let mut listed = content.style.listed_effects.iter().map(|listed| &content.style.shaders[listed.index]);
-            listed.find(|used| used.shader == name).map(|used| &used.values)
-        };
-        let lengths = &drawn.lengths;
-        let occlusion = effect("ssaoPost")
-            .map(|values| Occlusion {
-                radius: lengths.world(values.length("radius")),
-                intensity: values.number("intensity"),
-            })
-            .filter(|occlusion| occlusion.radius > 0.0 && occlusion.intensity > 0.0);
-        let lens = effect("dofPost").and_then(|values| {
-            let px = |length| {
-                let (px, world) = lengths.screen(length, request.size[1]);
-                px + world / optics.pixel(middle_depth(&camera, content))
-            };
-            lens(values, &optics, &camera, content, &|length| lengths.world(length), &px)
+        let (mut occlusion, mut lens, mut layers, mut lines) = (None, None, None, Vec::new());
+        with_effects(content, &drawn.lengths, &camera, request.size[1], |effect, values, context| {
+            let registered = EFFECTS[effect];
+            if registered.changes_nothing(values, context).is_some() {
+                return;
+            }
+            match registered.name() {
+                "ssaoPost" => {
+                    let (radius, intensity) = ((context.world)(values.length("radius")), values.number("intensity"));
+                    occlusion = Some(Occlusion { radius, intensity });
+                }
+                "dofPost" => {
+                    let circles = Circles::new(values, context);
+                    match values.choice("show") {
+                        "layers" => layers = circles,
+                        _ => lens = circles.map(|circles| Lens::new(circles, context.depths.front())),
+                    }
+                }
+                "outlinePost" => {
+                    let params: OutlineParams = bytemuck::pod_read_unaligned(&registered.uniform(values, context));
+                    lines.push(params);
+                }
+                _ => {}
+            }
         });
-        let lines: Vec<OutlineParams> = effects(&content.style, lengths, &camera, request.size[1])
-            .into_iter()
-            .filter(|effect| EFFECTS[effect.effect].name() == "outlinePost")
-            .map(|effect| bytemuck::pod_read_unaligned(&effect.params))
-            .collect();
         let picture = Picture {
             world: &world,
             materials: &materials,
@@ -128,6 +127,7 @@ impl Exact {
             lighting: &lighting,
             occlusion,
             lens,
+            layers,
             lines: &lines,
             background: content.camera.background(request.transparent),
         };
@@ -157,35 +157,6 @@ impl Exact {
         };
         Ok(Image { size: request.size, pixels, opaque: self.is_opaque(request) })
     }
-}
-
-/// Depth of the middle of the scene's sphere.
-fn middle_depth(camera: &Camera, content: &Content) -> f64 {
-    let center = content.scene.bounding_sphere().center;
-    f64::from(-camera.view_from_world.transform_point3(center).z).max(f64::from(camera.near))
-}
-
-/// The lens of `dofPost`: sharp at `focus`, and `blur` wide at the farther of the first and last of `layers`.
-fn lens(
-    values: &Values,
-    optics: &Optics,
-    camera: &Camera,
-    content: &Content,
-    world: &dyn Fn(Length) -> f64,
-    px: &dyn Fn(Length) -> f64,
-) -> Option<Lens> {
-    let (middle, radius) = (middle_depth(camera, content), f64::from(content.scene.bounding_sphere().radius));
-    let Some(Value::Numbers(layers)) = values.get("layers") else { return None };
-    let &[first, sharp_from, sharp_to, last] = &layers[..] else { return None };
-    let depth = |layer: f64| (middle + (2.0 * layer - 1.0) * radius).max(optics.near);
-    let focus = match values.get("focus") {
-        Some(Value::Length(length)) => world(*length).max(optics.near),
-        Some(Value::Choice(index)) if FOCUS[*index] == "center" => middle,
-        _ => 0.5 * (depth(sharp_from) + depth(sharp_to)),
-    };
-    let farther =
-        [depth(first), depth(last)].into_iter().max_by(|a, b| (a - focus).abs().total_cmp(&(b - focus).abs()))?;
-    Lens::new(optics, focus, farther, px(values.length("blur")))
 }
 
 /// Materials as the reference shades them.
@@ -274,16 +245,12 @@ fn encoded(rows: &[[f32; 4]], wide: bool) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::catalog;
 
     #[test]
     fn the_reference_knows_every_shader_and_effect() {
         // A new one needs its exact form in `shades` or `light_rows`.
         assert_eq!(SHADERS.iter().map(|shader| shader.name()).collect::<Vec<_>>(), ["basic", "toon", "unlit"]);
-        assert_eq!(EFFECTS.iter().map(|effect| effect.name()).collect::<Vec<_>>(), ["ssaoPost", "outlinePost"]);
-        let catalog = catalog();
-        let known = |name: &str| catalog.iter().any(|entry| entry.name == name && !entry.params.is_empty());
-        assert!(DRAWN_EFFECTS.iter().all(|name| known(name)));
+        assert_eq!(EFFECTS.iter().map(|effect| effect.name()).collect::<Vec<_>>(), ["ssaoPost", "outlinePost", "dofPost"]);
     }
 
     #[test]

@@ -17,7 +17,7 @@ use glam::DVec3;
 
 use crate::config::param::Param;
 use crate::config::{CatalogEntry, LightKind, ObjectKind, Role, Shadow, Style, Values};
-use crate::effects::{self, EFFECTS, EffectContext, effect_index};
+use crate::effects::{self, Depths, EFFECTS, EffectContext, effect_index};
 use crate::frame::objects::DrawList;
 use crate::frame::{self, Aovs, Effect, FrameInput, Materials, Renderer, TargetBytes};
 use crate::gpu::PassTimes;
@@ -32,11 +32,9 @@ pub use crate::gpu::{Counters, Gpu, GpuError};
 pub use live::{Part, Refusal, Reload, ReloadTimes, Sources, source_tree_shaders};
 pub use tiles::TileError;
 
-/// Effects and shaders of the contract that this version names but does not draw.
-const NOT_DRAWN: [(&str, Role, &str, &[Param]); 2] = [
-    ("curvature", Role::Object, "Glass that is clearer where the surface is flat.", &[]),
-    ("dofPost", Role::PostEffect, "Blurs what is out of focus.", effects::focus::PARAMS),
-];
+/// Shaders and effects of the contract that this version names but does not draw.
+const NOT_DRAWN: [(&str, Role, &str, &[Param]); 1] =
+    [("curvature", Role::Object, "Glass that is clearer where the surface is flat.", &[])];
 
 /// Why a frame lacks an effect that its style does not ask for.
 const NOT_LISTED: &str = "post_effects does not list it";
@@ -92,6 +90,8 @@ impl EffectForm {
         EffectForm { effect: "ssaoPost", feature: effects::occlusion::PUBLISHED };
     /// `ssaoPost` with `hemisphere`, its points turned instead of mirrored.
     pub const OCCLUSION_ROTATED: EffectForm = EffectForm { effect: "ssaoPost", feature: effects::occlusion::ROTATED };
+    /// `dofPost` with `five_layer` as published.
+    pub const FOCUS_PUBLISHED: EffectForm = EffectForm { effect: "dofPost", feature: effects::focus::PUBLISHED };
 }
 
 /// Counts of what a frame draws.
@@ -319,21 +319,13 @@ impl Engine {
         let camera = content.camera.turned(request.size, request.turn_deg.to_radians());
         let mut is_seen = [false; EFFECTS.len()];
         let mut left_out = Vec::new();
-        with_effects(&content.style, &drawn.lengths, &camera, request.size[1], |effect, values, context| {
+        with_effects(content, &drawn.lengths, &camera, request.size[1], |effect, values, context| {
             is_seen[effect] = true;
             let reason = EFFECTS[effect].changes_nothing(values, context);
             left_out.extend(reason.map(|reason| Step::left_out(EFFECTS[effect].name(), reason)));
         });
         let unseen = EFFECTS.iter().zip(is_seen).filter(|(_, is_seen)| !is_seen);
         left_out.extend(unseen.map(|(effect, _)| Step::left_out(effect.name(), NOT_LISTED)));
-        let is_listed = |name: &str| {
-            content.style.listed_effects.iter().any(|listed| content.style.shaders[listed.index].shader == name)
-        };
-        let not_drawn = NOT_DRAWN.iter().filter(|(_, role, ..)| *role == Role::PostEffect);
-        left_out.extend(not_drawn.map(|(name, ..)| match is_listed(name) {
-            true => Step::left_out(name, "the reference renderer alone draws it so far"),
-            false => Step::left_out(name, NOT_LISTED),
-        }));
         Ok(steps.into_iter().chain(left_out).collect())
     }
 
@@ -469,7 +461,7 @@ fn frame_input<T>(
 ) -> T {
     let camera = content.camera.turned(request.size, request.turn_deg.to_radians());
     let lighting = drawn.lighting.lighting(&camera);
-    let mut effects = effects(&content.style, &drawn.lengths, &camera, request.size[1]);
+    let mut effects = effects(content, &drawn.lengths, &camera, request.size[1]);
     for effect in &mut effects {
         let registered = EFFECTS[effect.effect];
         for (bit, feature) in registered.features().iter().enumerate() {
@@ -491,10 +483,10 @@ fn frame_input<T>(
     })
 }
 
-/// The post effects of a style in the order of their stages, without those that change nothing.
-fn effects(style: &Style, lengths: &Lengths, camera: &Camera, height_px: u32) -> Vec<Effect> {
+/// The post effects of the content's style in the order of their stages, without those that change nothing.
+fn effects(content: &Content, lengths: &Lengths, camera: &Camera, height_px: u32) -> Vec<Effect> {
     let mut effects = Vec::new();
-    with_effects(style, lengths, camera, height_px, |effect, values, context| {
+    with_effects(content, lengths, camera, height_px, |effect, values, context| {
         let registered = EFFECTS[effect];
         if registered.changes_nothing(values, context).is_none() {
             effects.push(Effect {
@@ -509,21 +501,31 @@ fn effects(style: &Style, lengths: &Lengths, camera: &Camera, height_px: u32) ->
     effects
 }
 
-/// Gives `each` the post effects that a style lists, by their places in the registry.
+/// Gives `each` the post effects that the content's style lists, by their places in the registry.
 fn with_effects(
-    style: &Style,
+    content: &Content,
     lengths: &Lengths,
     camera: &Camera,
     height_px: u32,
     mut each: impl FnMut(usize, &Values, &EffectContext<'_>),
 ) {
-    let pixel_world = camera.pixel_view(height_px) * if camera.orthographic { 1.0 } else { camera.near };
+    let pixel_world = |depth: f32| camera.pixel_view(height_px) * if camera.orthographic { 1.0 } else { depth };
+    let bounds = content.scene.bounding_sphere();
+    let middle = (-camera.view_from_world.transform_point3(bounds.center).z).max(camera.near);
+    let depths = Depths {
+        orthographic: camera.orthographic,
+        near: f64::from(camera.near),
+        middle: f64::from(middle),
+        radius: f64::from(bounds.radius),
+        pixel_world: f64::from(pixel_world(middle).max(f32::MIN_POSITIVE)),
+    };
     let context = EffectContext {
+        depths,
         screen: &|length| lengths.screen(length, height_px),
         world: &|length| lengths.world(length),
-        least_pixel_world: f64::from(pixel_world.max(f32::MIN_POSITIVE)),
+        least_pixel_world: f64::from(pixel_world(camera.near).max(f32::MIN_POSITIVE)),
     };
-    for used in style.post_effects.iter().map(|&index| &style.shaders[index]) {
+    for used in content.style.post_effects.iter().map(|&index| &content.style.shaders[index]) {
         if let Some(effect) = effect_index(used.shader) {
             each(effect, &used.values, &context);
         }

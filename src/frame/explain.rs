@@ -81,7 +81,7 @@ pub fn steps(gpu: &Gpu, plan: &Plan, input: &FrameInput<'_>, counts: [u64; 3]) -
 
     for (index, key) in plan.effects.iter().enumerate() {
         let effect = EFFECTS[key.effect];
-        for pass in effect.passes() {
+        for pass in effect.passes(key.features) {
             let is_end = pass.target == PassTarget::Picture;
             let (target, mut bytes) = match pass.target {
                 PassTarget::Own { format, pixels } => {

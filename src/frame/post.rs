@@ -79,8 +79,8 @@ type Pipelines = Vec<(wgpu::BindGroupLayout, wgpu::RenderPipeline)>;
 
 /// What one effect of the chain keeps from frame to frame.
 struct Slot {
-    /// The effect and picture size that its textures are for.
-    fits: Option<(usize, [u32; 2])>,
+    /// The passes and the picture's size that its textures are for.
+    fits: Option<(&'static [EffectPass], [u32; 2])>,
     params: KeptBuffer,
     own: Vec<Target>,
     groups: Vec<KeptBindGroup>,
@@ -142,10 +142,10 @@ impl Post {
             groups: Vec::new(),
         });
         for (slot, effect) in self.slots.iter_mut().zip(effects) {
-            if slot.fits == Some((effect.effect, size)) {
+            let passes = EFFECTS[effect.effect].passes(effect.features);
+            if slot.fits == Some((passes, size)) {
                 continue;
             }
-            let passes = EFFECTS[effect.effect].passes();
             let own = passes.iter().filter_map(|pass| match pass.target {
                 PassTarget::Own { format, pixels } => {
                     let size = [0, 1].map(|axis| size[axis].div_ceil(pixels[axis].max(1)));
@@ -155,7 +155,7 @@ impl Post {
             });
             slot.own = own.collect();
             slot.groups = passes.iter().map(|_| KeptBindGroup::default()).collect();
-            slot.fits = Some((effect.effect, size));
+            slot.fits = Some((passes, size));
         }
         self.slots.iter().flat_map(|slot| &slot.own).map(Target::bytes).sum()
     }
@@ -217,7 +217,7 @@ impl Post {
             };
             let onto = slot.own.iter().map(|target| (&target.view, nothing)).chain(last);
             for (((pass, (_, pipeline)), group), onto) in
-                EFFECTS[key.effect].passes().iter().zip(pipelines).zip(groups).zip(onto)
+                EFFECTS[key.effect].passes(key.features).iter().zip(pipelines).zip(groups).zip(onto)
             {
                 let times = timer.as_mut().and_then(|timer| timer.pass(pass.name));
                 let groups: &[(&wgpu::BindGroup, &[u32])] =
@@ -235,7 +235,7 @@ fn source<'a>(targets: &PostTargets<'a>, index: usize) -> Option<&'a wgpu::Textu
 
 fn build(gpu: &Gpu, visibility: &Visibility, key: &EffectKey) -> Result<Pipelines, GpuError> {
     let module = effect_module(key);
-    let passes = EFFECTS[key.effect].passes();
+    let passes = EFFECTS[key.effect].passes(key.features);
     let build = |(index, pass): (usize, &EffectPass)| {
         let uint = fullscreen::texture(wgpu::TextureSampleType::Uint);
         let float = fullscreen::texture(wgpu::TextureSampleType::Float { filterable: false });
@@ -290,14 +290,14 @@ pub fn effect_module(key: &EffectKey) -> Module {
     for (bit, feature) in effect.features().iter().enumerate() {
         bindings.push_str(&format!("const {feature}: bool = {};\n", key.features >> bit & 1 == 1));
     }
-    let own = effect.passes().iter().filter(|pass| pass.target != PassTarget::Picture);
+    let own = effect.passes(key.features).iter().filter(|pass| pass.target != PassTarget::Picture);
     for (pass, binding) in own.zip(FIRST_OWN_BINDING..) {
         let kind = if is_uint(pass) { "u32" } else { "f32" };
         bindings.push_str(&format!("@group(1) @binding({binding}) var {}: texture_2d<{kind}>;\n", pass.name));
     }
     module.add_generated("effect bindings", bindings);
     module.add(wgsl!("lib/post.wgsl"));
-    for file in effect.wgsl() {
+    for file in effect.wgsl(key.features) {
         module.add(*file);
     }
     module

@@ -2,12 +2,12 @@
 //!
 //! The same rules as in `shaders/effects/outline.wgsl`, looked for between places of a grid that is finer than pixels; a line
 //! is the set of places within its width of an edge. What goes on beyond a place is the sphere that touches the surface there.
-//! Lines are those of the pinhole: a lens does not blur them.
+//! Through a lens each of its places has a grid of its own.
 
 use glam::{DVec2, DVec3};
 
-use super::Optics;
-use super::primitive::Ray;
+use super::lens::Sight;
+use super::{Lens, Optics};
 use crate::effects::outline::{MAX_WIDTH_PX, OutlineParams};
 
 const CREASE: usize = 0;
@@ -37,6 +37,8 @@ pub struct Place {
 pub struct Grid<'a> {
     /// Who looks.
     pub optics: &'a Optics,
+    /// Through which place of a lens, if there is one.
+    pub lens: Option<(&'a Lens, DVec2)>,
     /// The first pixel, which may lie outside the picture.
     pub origin_px: DVec2,
     /// Places to each side of a pixel.
@@ -53,8 +55,8 @@ struct Mark {
     at: DVec2,
     /// Which kinds of line lie there.
     kinds: [bool; 3],
-    /// What is in front, on its ray, and how far behind it the other lies; none where surfaces touch.
-    front: Option<(Place, Ray, f64)>,
+    /// What is in front, on its line of sight, and how far behind it the other lies; none where surfaces touch.
+    front: Option<(Place, Sight, f64)>,
     /// Depth of the edge, for widths in scene units.
     depth: f64,
     radius_px: f64,
@@ -69,10 +71,10 @@ pub fn reach_px(params: &OutlineParams, least_pixel: f64) -> f64 {
 }
 
 impl Grid<'_> {
-    /// The ray of a place.
-    pub fn ray(&self, [x, y]: [usize; 2]) -> Ray {
-        let place = DVec2::new(x as f64 + 0.5, y as f64 + 0.5) / f64::from(self.side);
-        self.optics.ray(self.origin_px + place)
+    /// The line of sight of a place.
+    pub fn sight(&self, [x, y]: [usize; 2]) -> Sight {
+        let place = self.origin_px + DVec2::new(x as f64 + 0.5, y as f64 + 0.5) / f64::from(self.side);
+        Sight::new(self.optics, place, self.lens)
     }
 
     fn seen(&self, [x, y]: [usize; 2]) -> Option<&Place> {
@@ -130,7 +132,7 @@ impl Grid<'_> {
         }
         let beside = [beside.x as usize, beside.y as usize];
         let is_front = self.seen(beside).is_some_and(|seen| {
-            let (goes_on, ends) = continued(front, *on, self.ray(beside));
+            let (goes_on, ends) = continued(front, on, &self.sight(beside));
             seen.depth <= front.depth || (!ends && (seen.depth - goes_on).abs() < 0.5 * behind)
         });
         !is_front && own.is_none_or(|own| own.depth > front.depth + 0.5 * behind)
@@ -153,7 +155,7 @@ impl Grid<'_> {
     fn mark(&self, at: [usize; 2], step: [usize; 2], params: &OutlineParams) -> Option<Mark> {
         let other = [at[0] + step[0], at[1] + step[1]];
         let (a, b) = (self.seen(at), self.seen(other));
-        let (ray_a, ray_b) = (self.ray(at), self.ray(other));
+        let (on_a, on_b) = (self.sight(at), self.sight(other));
         let place = 0.5 * DVec2::new((at[0] + other[0] + 1) as f64, (at[1] + other[1] + 1) as f64);
         let least = |depth: f64| LEAST_STEP_PX * self.optics.pixel(depth);
         let step_at = |depth: f64| f64::from(params.depth_step).max(least(depth));
@@ -161,7 +163,7 @@ impl Grid<'_> {
         let (a, b) = match (a, b) {
             (None, None) => return None,
             (Some(only), None) | (None, Some(only)) => {
-                let on = if a.is_some() { ray_a } else { ray_b };
+                let on = if a.is_some() { on_a } else { on_b };
                 return (only.id != 0).then(|| Mark {
                     at: place,
                     kinds: [false, false, true],
@@ -177,7 +179,7 @@ impl Grid<'_> {
             return None;
         }
         let is_same_round = a.id == b.id && a.bend != 0.0;
-        let (gap, a_nearer) = if is_same_round { (0.0, a.depth < b.depth) } else { gap(a, ray_a, b, ray_b) };
+        let (gap, a_nearer) = if is_same_round { (0.0, a.depth < b.depth) } else { gap(a, &on_a, b, &on_b) };
         let front = if a_nearer { a } else { b };
         let (least, step_world) = (least(front.depth), step_at(front.depth));
         let is_part = |place: &Place| place.id >> 32 == 3;
@@ -192,7 +194,7 @@ impl Grid<'_> {
         kinds.contains(&true).then(|| Mark {
             at: place,
             kinds,
-            front: (!touches).then(|| (*front, if a_nearer { ray_a } else { ray_b }, step_world.min(gap))),
+            front: (!touches).then(|| (*front, if a_nearer { on_a } else { on_b }, step_world.min(gap))),
             depth: front.depth,
             radius_px: if touches { radius_px(a).max(radius_px(b)) } else { radius_px(front) },
             outermost: false,
@@ -216,7 +218,7 @@ impl Grid<'_> {
             let (from, to) = (place(offset)?, place(offset + 1)?);
             let (p, q) = (self.seen(from)?, self.seen(to)?);
             let is_round = p.id == q.id && p.bend != 0.0;
-            let touches = is_round || gap(p, self.ray(from), q, self.ray(to)).0 <= least;
+            let touches = is_round || gap(p, &self.sight(from), q, &self.sight(to)).0 <= least;
             let turn = if is_round { 0.0 } else { p.normal.dot(q.normal).clamp(-1.0, 1.0).acos() };
             (p.id != 0 && q.id != 0 && touches).then_some(turn)
         };
@@ -236,8 +238,8 @@ impl Grid<'_> {
 }
 
 /// How far one of two neighbours lies behind the other where that ends, 0 where they meet; and whether the first is in front.
-fn gap(a: &Place, ray_a: Ray, b: &Place, ray_b: Ray) -> (f64, bool) {
-    let ((on_b, a_ends), (on_a, b_ends)) = (continued(a, ray_a, ray_b), continued(b, ray_b, ray_a));
+fn gap(a: &Place, sight_a: &Sight, b: &Place, sight_b: &Sight) -> (f64, bool) {
+    let ((on_b, a_ends), (on_a, b_ends)) = (continued(a, sight_a, sight_b), continued(b, sight_b, sight_a));
     let (a_behind, b_behind) = (on_b - b.depth, on_a - a.depth);
     match (a_ends, b_ends) {
         (true, true) => ((on_b - on_a).abs(), on_b < on_a),
@@ -250,9 +252,10 @@ fn gap(a: &Place, ray_a: Ray, b: &Place, ray_b: Ray) -> (f64, bool) {
     }
 }
 
-/// The sphere that touches a surface at its place, on a neighbour's ray: its depth there, or where it turns away, and whether
+/// The sphere that touches a surface at its place, on a neighbour's line of sight: its depth there, or where it turns away, and whether
 /// it does.
-fn continued(g: &Place, own: Ray, other: Ray) -> (f64, bool) {
+fn continued(g: &Place, own: &Sight, other: &Sight) -> (f64, bool) {
+    let (own, other) = (own.line_at(g.depth), other.line_at(g.depth));
     let e = other.at(g.depth) - own.at(g.depth);
     let d = other.direction;
     let normal = if g.bend == 0.0 { g.facet } else { g.normal };

@@ -7,12 +7,13 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use glam::{DVec2, DVec3};
 
 use super::light::{Arriving, arriving};
+use super::lens::Sight;
 use super::lines::{self, Grid, Place};
 use super::occlusion::occluded;
-use super::primitive::Ray;
 use super::sampling::{seed, spread, square_point};
 use super::world::{Hit, Surface, World};
 use super::{Lens, Material, Occlusion, Optics, Shade, toon};
+use crate::effects::focus::Circles;
 use crate::effects::outline::OutlineParams;
 use crate::scene::Lighting;
 use crate::shading::environment::Studio;
@@ -25,6 +26,8 @@ const LEAST_LIGHT: f64 = 1.0 / 131_072.0;
 const SHADOW_RAYS: u32 = 256;
 const OCCLUSION_RAYS: u32 = 512;
 const ENVIRONMENT_DIRECTIONS: u32 = 1024;
+/// Least places of a grid to each side of a pixel.
+const LEAST_CELLS: u32 = 3;
 /// Samples from which on a draft takes no fewer of them.
 const WHOLE_SAMPLES: u32 = 64;
 
@@ -49,6 +52,8 @@ pub struct Picture<'a> {
     pub occlusion: Option<Occlusion>,
     /// What is out of focus.
     pub lens: Option<Lens>,
+    /// Layers of focus, in whose colours all is drawn instead.
+    pub layers: Option<Circles>,
     /// Lines over the picture, the lower ones first.
     pub lines: &'a [OutlineParams],
     /// Premultiplied linear background.
@@ -153,11 +158,39 @@ impl Picture<'_> {
         }
     }
 
-    /// The same with lines: samples lie on a grid, in which the lines are found.
+    /// The same with lines: samples lie on a grid, in which the lines are found. Through a lens each sample has its place of
+    /// the lens, the same for all pixels, and a grid there.
     fn lined_tile(&self, tile: &Tile, side: u32, draft: bool, studio: &Studio) -> Vec<[f32; 4]> {
         // At least three places to each side of a pixel: lines are found between them.
-        let side = side.max(3);
-        let shared_by = if draft { (side * side).max(WHOLE_SAMPLES) } else { side * side };
+        let cells = if self.lens.is_some() { LEAST_CELLS } else { side.max(LEAST_CELLS) };
+        let count = if self.lens.is_some() { side * side } else { cells * cells };
+        let shared_by = if draft { count.max(WHOLE_SAMPLES) } else { count };
+        let mut sums = vec![(DVec3::ZERO, 0.0); (tile.size[0] * tile.size[1]) as usize];
+        let indices: Vec<u32> = (0..count).collect();
+        match &self.lens {
+            Some(lens) => {
+                for index in indices {
+                    let point = spread(index, seed([0, 0], 0, FOR_LENS));
+                    self.add_lined(tile, cells, &[index], Some((lens, point)), shared_by, studio, &mut sums);
+                }
+            }
+            None => self.add_lined(tile, cells, &indices, None, shared_by, studio, &mut sums),
+        }
+        sums.into_iter().map(|(light, alpha)| self.over(light, alpha, count)).collect()
+    }
+
+    /// Adds samples with lines to the pixels of a tile; they lie in the cells of a grid by their numbers.
+    #[allow(clippy::too_many_arguments)]
+    fn add_lined(
+        &self,
+        tile: &Tile,
+        side: u32,
+        indices: &[u32],
+        lens: Option<(&Lens, DVec2)>,
+        shared_by: u32,
+        studio: &Studio,
+        sums: &mut [(DVec3, f64)],
+    ) {
         let reach = self.lines.iter().map(|lines| lines::reach_px(lines, self.optics.pixel(self.optics.near)));
         // A pixel beyond lines, since folds are looked for within one.
         let margin = reach.fold(0.0, f64::max).ceil() as usize + 1;
@@ -165,23 +198,24 @@ impl Picture<'_> {
         let [inner_width, inner_height] = tile.size.map(|length| length as usize * cells);
         let mut grid = Grid {
             optics: &self.optics,
+            lens,
             origin_px: DVec2::new(f64::from(tile.origin[0]), f64::from(tile.origin[1])) - margin as f64,
             side,
             size: [inner_width + 2 * edge, inner_height + 2 * edge],
             places: Vec::new(),
         };
         let [width, height] = grid.size;
-        grid.places = (0..width * height).map(|index| self.seen(grid.ray([index % width, index / width]))).collect();
+        grid.places = (0..width * height).map(|index| self.seen(&grid.sight([index % width, index / width]))).collect();
         let covered: Vec<Vec<[f64; 3]>> = self.lines.iter().map(|lines| grid.covered(lines)).collect();
-        let pixel = |[x, y]: [u32; 2]| {
+        for ([x, y], (light, alpha)) in tile.pixels().zip(sums) {
             let corner = [(x - tile.origin[0]) as usize * cells + edge, (y - tile.origin[1]) as usize * cells + edge];
-            let (mut light, mut alpha) = (DVec3::ZERO, 0.0);
-            for index in 0..side * side {
-                let cell = [index % side, index / side];
+            for &index in indices {
+                let cell = [index % side, index / side % side];
                 let at = [corner[0] + cell[0] as usize, corner[1] + cell[1] as usize];
                 let place = DVec2::new(f64::from(x), f64::from(y))
                     + (DVec2::new(f64::from(cell[0]), f64::from(cell[1])) + 0.5) / f64::from(side);
-                let (mut color, mut share) = self.sample([x, y], index, shared_by, place, studio);
+                let sight = Sight::new(&self.optics, place, lens);
+                let (mut color, mut share) = self.sample([x, y], index, shared_by, &sight, studio);
                 for (lines, covered) in self.lines.iter().zip(&covered) {
                     let colors = [lines.crease_color, lines.boundary_color, lines.silhouette_color];
                     for ([r, g, b, opacity], covered) in colors.into_iter().zip(covered[at[1] * width + at[0]]) {
@@ -190,39 +224,43 @@ impl Picture<'_> {
                         share += line * (1.0 - share);
                     }
                 }
-                light += color;
-                alpha += share;
+                *light += color;
+                *alpha += share;
             }
-            self.over(light, alpha, side * side)
-        };
-        tile.pixels().map(pixel).collect()
+        }
     }
 
     /// What a line of sight sees first, for lines; a hull outline is one already.
-    fn seen(&self, ray: Ray) -> Option<Place> {
+    fn seen(&self, sight: &Sight) -> Option<Place> {
         let near = self.optics.near;
-        let mut last = None;
-        let hit = loop {
-            let Some(hit) = self.world.next(ray, near, last) else { break None };
-            let surface = self.world.surface(ray, hit);
-            if self.materials[surface.material as usize].opacity > 0.0 {
-                break Some((hit, surface));
+        for piece in sight.pieces() {
+            let mut last = Hit::just_before(piece.from);
+            let hit = loop {
+                let hit = self.world.next(piece.ray, near, Some(last)).filter(|hit| hit.t < piece.until);
+                let Some(hit) = hit else { break None };
+                let surface = self.world.surface(piece.ray, hit);
+                if self.materials[surface.material as usize].opacity > 0.0 {
+                    break Some((hit, surface));
+                }
+                last = hit;
+            };
+            let end = hit.map_or(piece.until, |(hit, _)| hit.t);
+            if let Some(outline) = self.world.first_outline(piece.ray, near, piece.from, end, &[]) {
+                let depth = outline.depth;
+                return Some(Place { depth, normal: DVec3::Z, facet: DVec3::Z, bend: 0.0, group: 0, id: 0 });
             }
-            last = Some(hit);
-        };
-        let end = hit.map_or(f64::INFINITY, |(hit, _)| hit.t);
-        if let Some(outline) = self.world.first_outline(ray, near, near, end, &[]) {
-            return Some(Place { depth: outline.depth, normal: DVec3::Z, facet: DVec3::Z, bend: 0.0, group: 0, id: 0 });
+            if let Some((hit, surface)) = hit {
+                return Some(Place {
+                    depth: hit.t,
+                    normal: surface.normal,
+                    facet: surface.facet,
+                    bend: surface.bend,
+                    group: surface.group,
+                    id: surface.id,
+                });
+            }
         }
-        let (hit, surface) = hit?;
-        Some(Place {
-            depth: hit.t,
-            normal: surface.normal,
-            facet: surface.facet,
-            bend: surface.bend,
-            group: surface.group,
-            id: surface.id,
-        })
+        None
     }
 
     /// The mean of a pixel's samples over the background: premultiplied linear light.
@@ -236,7 +274,10 @@ impl Picture<'_> {
             let cell = DVec2::new(f64::from(index % side), f64::from(index / side));
             let corner = DVec2::new(f64::from(pixel[0]), f64::from(pixel[1]));
             let place = corner + (cell + within) / f64::from(side);
-            let (color, covered) = self.sample(pixel, index, shared_by, place, studio);
+            // Spread over the pixel's samples, whichever cell each has.
+            let lens = self.lens.as_ref().map(|lens| (lens, spread(index, seed(pixel, 0, FOR_LENS))));
+            let sight = Sight::new(&self.optics, place, lens);
+            let (color, covered) = self.sample(pixel, index, shared_by, &sight, studio);
             light += color;
             alpha += covered;
         }
@@ -254,23 +295,18 @@ impl Picture<'_> {
     }
 
     /// Light along one line of sight, and the share of what is behind it that it covers.
-    fn sample(&self, pixel: [u32; 2], index: u32, shared_by: u32, place: DVec2, studio: &Studio) -> (DVec3, f64) {
-        let ray = match &self.lens {
-            Some(lens) => {
-                // Spread over the pixel's samples, whichever cell each has.
-                let point = spread(index, seed(pixel, 0, FOR_LENS));
-                lens.ray(&self.optics, place, point)
-            }
-            None => self.optics.ray(place),
-        };
+    fn sample(&self, pixel: [u32; 2], index: u32, shared_by: u32, sight: &Sight, studio: &Studio) -> (DVec3, f64) {
         let near = self.optics.near;
         let (mut light, mut open) = (DVec3::ZERO, 1.0);
-        let mut last: Option<Hit> = None;
-        let mut outlines_after = near;
         let mut crossed: Vec<u64> = Vec::new();
+        let mut pieces = sight.pieces();
+        let Some(mut piece) = pieces.next() else { return (light, 0.0) };
+        let mut last = Hit::just_before(piece.from);
+        let mut outlines_after = piece.from;
         while open > LEAST_LIGHT {
-            let hit = self.world.next(ray, near, last);
-            let end = hit.map_or(f64::INFINITY, |hit| hit.t);
+            let ray = piece.ray;
+            let hit = self.world.next(ray, near, Some(last)).filter(|hit| hit.t < piece.until);
+            let end = hit.map_or(piece.until, |hit| hit.t);
             if let Some(outline) = self.world.first_outline(ray, near, outlines_after, end, &crossed) {
                 let material = &self.materials[outline.material as usize];
                 if let Some(hull) = material.hull {
@@ -281,17 +317,25 @@ impl Picture<'_> {
                 crossed.push(outline.owner);
                 continue;
             }
-            let Some(hit) = hit else { break };
+            let Some(hit) = hit else {
+                let Some(next) = pieces.next() else { break };
+                piece = next;
+                (last, outlines_after) = (Hit::just_before(piece.from), piece.from);
+                continue;
+            };
             let surface = self.world.surface(ray, hit);
             let opacity = self.materials[surface.material as usize].opacity;
             if opacity > 0.0 {
                 let seen = Seen { pixel, index, shared_by, surface: &surface, hit };
-                let color = self.shaded(&seen, -ray.direction.normalize(), studio);
+                let mut color = self.shaded(&seen, -ray.direction.normalize(), studio);
+                if let Some(circles) = &self.layers {
+                    color = circles.layer_color(hit.t, color);
+                }
                 light += open * opacity * color;
                 open *= 1.0 - opacity;
             }
             crossed.push(surface.id);
-            last = Some(hit);
+            last = hit;
         }
         (light, 1.0 - open)
     }

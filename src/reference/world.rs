@@ -87,6 +87,13 @@ pub struct Hit {
     pub object: Object,
 }
 
+impl Hit {
+    /// One that comes before all that is met at `t` or beyond.
+    pub fn just_before(t: f64) -> Hit {
+        Hit { t: t.next_down(), object: Object::Triangle(u32::MAX) }
+    }
+}
+
 /// A hull outline on a line of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OutlineHit {

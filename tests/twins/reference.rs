@@ -50,6 +50,7 @@ fn drawn(
         lighting: &lighting,
         occlusion,
         lens: None,
+        layers: None,
         lines: &[],
         background: [0.0; 4],
     };

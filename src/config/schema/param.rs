@@ -122,7 +122,7 @@ pub(super) fn param(param: &Param) -> Value {
             put("pattern", patterns::boolean().into());
             put("patternErrorMessage", "Write true or false.".into());
         }
-        Kind::Numbers { len } => {
+        Kind::Numbers { len, .. } => {
             let mut list = json!({ "type": "array", "items": numbers() });
             if len > 0 {
                 (list["minItems"], list["maxItems"]) = (len.into(), len.into());
