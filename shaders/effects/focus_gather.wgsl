@@ -101,6 +101,12 @@ fn mean(share: Share) -> vec4<f32> {
     return share.color / max(share.weight, 1e-9);
 }
 
+// The share of a circle's light that falls on a pixel at a distance.
+fn spread_at(radius_px: f32, distance_px: f32) -> f32 {
+    let radius = max(abs(radius_px), LEAST_RADIUS_PX);
+    return clamp(radius - distance_px + 0.5, 0.0, 1.0) / (PI * (radius * radius + 1.0 / 12.0));
+}
+
 // The light of two fields, premultiplied: what is before the focus, with what it covers of the lens, and what is seen where that
 // does not cover.
 @fragment
@@ -115,25 +121,30 @@ fn gather_fields(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u3
     var same = Share(vec4<f32>(0.0), 0.0);
     var behind = Share(vec4<f32>(0.0), 0.0);
     var beyond = Share(vec4<f32>(0.0), 0.0);
+    // What of the taps a circle like the pixel's own would get: 1, but for how they lie.
+    var whole = 0.0;
     // Small circles need fewer taps; so do samples of a still, which add up.
     let most = max(f32(focus_params.taps) * view.footprint_px, LEAST_TAPS);
     let taps = ceil(clamp(PI * reach * reach, LEAST_TAPS, most));
+    // Circles end softly, half a pixel beyond their radius.
+    let wide = reach + 0.5;
     let noise = pixel_noise(own);
     var inner = 0.0;
     for (var tap = 0.0; tap < taps; tap += 1.0) {
         // Denser near the pixel: the radius is a power of 3/4 of the share of taps, the area one of 3/2.
         let end = (tap + 1.0) / taps;
-        let area = PI * reach * reach * (end * sqrt(end) - inner);
+        let area = PI * wide * wide * (end * sqrt(end) - inner);
         inner = end * sqrt(end);
         let share = (tap + noise.y) / taps;
-        let long = select(reach * sqrt(share * sqrt(share)), 0.0, tap == 0.0);
+        let long = select(wide * sqrt(share * sqrt(share)), 0.0, tap == 0.0);
         let angle = 2.3999632 * tap + 2.0 * PI * noise.x;
         let off = vec2<i32>(round(long * vec2<f32>(cos(angle), sin(angle))));
         let other = circle_at(own + off);
-        let radius = max(abs(other.radius_px), LEAST_RADIUS_PX);
         let distance = length(vec2<f32>(off));
-        let spread = area * clamp(radius - distance + 0.5, 0.0, 1.0) / (PI * (radius * radius + 1.0 / 12.0));
-        let filled = spread + FILL * area / (1.0 + distance * distance);
+        let spread = area * spread_at(other.radius_px, distance);
+        whole += area * spread_at(circle.radius_px, distance);
+        let nearness = 1.0 / (1.0 + distance * distance);
+        let filled = spread + FILL * area * nearness * nearness;
         let deeper = other.radius_px - circle.radius_px;
         if (other.radius_px < -SAME_PX) != is_near {
             beyond = added(beyond, other.color, select(spread, filled, is_near));
@@ -147,7 +158,7 @@ fn gather_fields(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u3
     }
     // Each covers what it covers of what is left of the lens.
     let front = min(before.weight, 1.0);
-    let own_share = min(same.weight, 1.0 - front);
+    let own_share = min(same.weight / max(whole, 1e-9), 1.0 - front);
     let rest = 1.0 - front - own_share;
     var fields: Fields;
     if is_near {
@@ -185,8 +196,9 @@ fn compose_fields(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f
     let sharp = textureLoad(color, own, 0);
     if reach < LEAST_RADIUS_PX { return finished(sharp); }
     let last = vec2<i32>(view.tile_size_px) - 1;
-    let side = i32(max(round(min(EVEN_PX * view.footprint_px, reach)), 1.0));
     let is_near = circle.radius_px < -SAME_PX;
+    let blurred = select(reach, -circle.radius_px, is_near);
+    let side = i32(max(round(min(EVEN_PX * view.footprint_px, blurred)), 1.0));
     let is_sharp = circle.is_seen && abs(circle.radius_px) < LEAST_RADIUS_PX;
     // How far its own field is blurred, and its neighbours' are like it.
     let far_reach = select(reach, abs(circle.radius_px), circle.is_seen);

@@ -117,7 +117,8 @@ impl Circles {
     pub fn diameter_px(&self, depth: f64) -> f64 {
         let measure = measure(self.orthographic, depth);
         let [near, far] = [self.sharp[0] - measure, measure - self.sharp[1]];
-        (self.slopes_px[1] * far.max(0.0)).min(self.most_px[1]) - (self.slopes_px[0] * near.max(0.0)).min(self.most_px[0])
+        (self.slopes_px[1] * far.max(0.0)).min(self.most_px[1])
+            - (self.slopes_px[0] * near.max(0.0)).min(self.most_px[0])
     }
 
     /// The linear colour in which layers are shown of what lies at a depth and has this one: of the layer, as bright as its own.
@@ -192,7 +193,8 @@ impl PostEffect for Focus {
     }
     fn wgsl(&self, features: u32) -> &'static [Wgsl] {
         const LAYERS: &[Wgsl] = &[wgsl!("effects/focus_layers.wgsl"), wgsl!("effects/focus.wgsl")];
-        const GATHER: &[Wgsl] = &[wgsl!("lib/noise.wgsl"), wgsl!("effects/focus_gather.wgsl"), wgsl!("effects/focus.wgsl")];
+        const GATHER: &[Wgsl] =
+            &[wgsl!("lib/noise.wgsl"), wgsl!("effects/focus_gather.wgsl"), wgsl!("effects/focus.wgsl")];
         const SHOWN: &[Wgsl] = &[wgsl!("effects/focus.wgsl")];
         match features {
             _ if features & SHOWS_LAYERS != 0 => SHOWN,

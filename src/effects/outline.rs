@@ -189,6 +189,7 @@ pub const fn group_word(chain: u32, residue: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::Depths;
 
     #[test]
     fn a_group_word_tells_neighbours_apart() {
@@ -201,7 +202,8 @@ mod tests {
     #[test]
     fn lines_without_width_are_left_out() {
         let values = Values::defaults(PARAMS);
-        let context = EffectContext { screen: &|_| (0.0, 0.0), world: &|_| 0.0, least_pixel_world: 1.0 };
+        let depths = Depths { orthographic: false, near: 1.0, middle: 2.0, radius: 1.0, pixel_world: 1.0 };
+        let context = EffectContext { screen: &|_| (0.0, 0.0), world: &|_| 0.0, least_pixel_world: 1.0, depths };
         assert_eq!(Outline.changes_nothing(&values, &context), None);
         assert_eq!(Outline.features_used(&values), 0b110);
     }

@@ -250,7 +250,10 @@ mod tests {
     fn the_reference_knows_every_shader_and_effect() {
         // A new one needs its exact form in `shades` or `light_rows`.
         assert_eq!(SHADERS.iter().map(|shader| shader.name()).collect::<Vec<_>>(), ["basic", "toon", "unlit"]);
-        assert_eq!(EFFECTS.iter().map(|effect| effect.name()).collect::<Vec<_>>(), ["ssaoPost", "outlinePost", "dofPost"]);
+        assert_eq!(
+            EFFECTS.iter().map(|effect| effect.name()).collect::<Vec<_>>(),
+            ["ssaoPost", "outlinePost", "dofPost"]
+        );
     }
 
     #[test]

@@ -5,6 +5,7 @@
 //! experiments/*  ->  cases  ->  run: rounds, truths, metrics  ->  report  ->  chart, page
 //! ```
 
+mod boxes;
 pub mod chart;
 mod date;
 pub mod experiment;

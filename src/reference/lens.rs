@@ -64,8 +64,12 @@ pub struct Lens {
 impl Lens {
     /// One that blurs so; `front` is the least depth at which anything lies.
     pub fn new(circles: Circles, front: f64) -> Lens {
-        let Circles { orthographic, sharp: [from, to], slopes_px: [before, behind], most_px: [most_before, most_behind] } =
-            circles;
+        let Circles {
+            orthographic,
+            sharp: [from, to],
+            slopes_px: [before, behind],
+            most_px: [most_before, most_behind],
+        } = circles;
         // Where a measure is met: behind everything, if it never is.
         let depth = |measure: f64| match orthographic {
             true => measure,
@@ -73,13 +77,8 @@ impl Lens {
             false => f64::INFINITY,
         };
         let bends = [depth(from - most_before / before), depth(from), depth(to), depth(to + most_behind / behind)];
-        let lines = [
-            [-most_before, 0.0],
-            [-before * from, before],
-            [0.0, 0.0],
-            [-behind * to, behind],
-            [most_behind, 0.0],
-        ];
+        let lines =
+            [[-most_before, 0.0], [-before * from, before], [0.0, 0.0], [-behind * to, behind], [most_behind, 0.0]];
         let mut spans = [(0.0, 0.0, [0.0; 2]); 5];
         let mut start = f64::NEG_INFINITY;
         for (index, (span, line)) in spans.iter_mut().zip(lines).enumerate() {
@@ -138,7 +137,12 @@ mod tests {
 
     fn layers(orthographic: bool) -> Circles {
         let [z0, z1, z2, z3] = [4.0, 6.0, 9.0, 14.0].map(|depth| measure(orthographic, depth));
-        Circles { orthographic, sharp: [z1, z2], slopes_px: [20.0 / (z1 - z0), 30.0 / (z3 - z2)], most_px: [20.0, 30.0] }
+        Circles {
+            orthographic,
+            sharp: [z1, z2],
+            slopes_px: [20.0 / (z1 - z0), 30.0 / (z3 - z2)],
+            most_px: [20.0, 30.0],
+        }
     }
 
     #[test]

@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use glam::{DVec2, DVec3};
 
-use super::light::{Arriving, arriving};
 use super::lens::Sight;
+use super::light::{Arriving, arriving};
 use super::lines::{self, Grid, Place};
 use super::occlusion::occluded;
 use super::sampling::{seed, spread, square_point};

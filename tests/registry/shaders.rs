@@ -58,19 +58,28 @@ fn every_effect_has_its_files_its_twin_and_an_end() {
         let (name, file) = (effect.name(), effect.file());
         assert!(effect.doc().ends_with('.'), "{name}: its doc is not a sentence");
         let own = format!("effects/{file}.wgsl");
-        assert_eq!(effect.wgsl().last().map(|file| file.path), Some(own.as_str()), "{name}: its own file comes last");
         assert_eq!(effect.params_info().path, own, "{name}: its parameters are declared in its own file");
         assert!(at(&format!("src/effects/{file}.rs")).exists(), "src/effects/{file}.rs is missing");
         assert!(main.contains(&format!("mod {file};")), "tests/twins/main.rs: {name} has no twin `mod {file};`");
-        let code = text(&format!("shaders/{own}"));
-        for pass in effect.passes() {
-            assert!(code.contains(&format!("fn {}(", pass.entry)), "shaders/{own}: there is no `fn {}`", pass.entry);
+        // Features may choose other files and other passes.
+        let mut all_code = String::new();
+        for features in 0..1 << effect.features().len() {
+            let files = effect.wgsl(features);
+            assert_eq!(files.last().map(|file| file.path), Some(own.as_str()), "{name}: its own file comes last");
+            let code: String = files.iter().map(|file| text(&format!("shaders/{}", file.path))).collect();
+            let passes = effect.passes(features);
+            for pass in passes {
+                assert!(code.contains(&format!("fn {}(", pass.entry)), "{name}: there is no `fn {}`", pass.entry);
+            }
+            let ends: Vec<bool> = passes.iter().map(|pass| pass.target == PassTarget::Picture).collect();
+            assert!(ends.iter().rev().skip(1).all(|end| !end) && ends.last() == Some(&true), "{name}: {ends:?}");
+            all_code.push_str(&code);
         }
         for feature in effect.features() {
-            assert!(code.contains(feature), "shaders/{own}: nothing reads {feature}");
+            let chooses = effect.passes(0)
+                != effect.passes(1 << effect.features().iter().position(|f| f == feature).unwrap_or(0));
+            assert!(chooses || all_code.contains(feature), "shaders/{own}: nothing reads {feature}");
         }
-        let ends: Vec<bool> = effect.passes().iter().map(|pass| pass.target == PassTarget::Picture).collect();
-        assert!(ends.iter().rev().skip(1).all(|end| !end) && ends.last() == Some(&true), "{name}: {ends:?}");
     }
 }
 

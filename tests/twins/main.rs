@@ -4,6 +4,7 @@ mod basic;
 mod brdf;
 mod brdf_table;
 mod environment;
+mod focus;
 mod furnace;
 mod gpu;
 mod impostors;

@@ -1,5 +1,6 @@
 //! The experiments: one file each, and one line in [`EXPERIMENTS`].
 
+mod dof;
 mod geometry;
 mod looks;
 mod outlines;
@@ -19,6 +20,7 @@ pub const EXPERIMENTS: &[&dyn Experiment] = &[
     &outlines::Outlines,
     &shadows::Shadows,
     &ssao::Ssao,
+    &dof::Dof,
 ];
 
 /// The experiment of this name.

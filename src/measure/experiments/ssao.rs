@@ -1,11 +1,11 @@
 //! `ssao`: ambient occlusion in screen space, against rays.
 
-use std::fmt::Write as _;
 use std::rc::Rc;
 
 use serde_json::json;
 
 use crate::engine::{EffectForm, Request};
+use crate::measure::boxes::boxes;
 use crate::measure::experiment::{Case, ChartKind, Entry, ErrorKind, Experiment, Judge, MeasureError, Setup, settings};
 use crate::measure::page::short;
 use crate::measure::run::{Row, geometric_mean};
@@ -118,46 +118,25 @@ fn pocket() -> Result<Scene, MeasureError> {
     scene("pocket.xyz", format!("{}\n\n{}\n", lines.len(), lines.join("\n")).as_bytes())
 }
 
-/// A box as OBJ; `first` is the number of its first corner.
-fn cuboid(text: &mut String, first: usize, low: [f64; 3], high: [f64; 3]) {
-    for corner in 0..8 {
-        let at = |axis: usize| if corner >> axis & 1 == 1 { high[axis] } else { low[axis] };
-        let _ = writeln!(text, "v {} {} {}", at(0), at(1), at(2));
-    }
-    for [a, b, c, d] in [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]] {
-        let [a, b, c, d] = [a, b, c, d].map(|corner| corner + first);
-        let _ = writeln!(text, "f {a} {b} {c} {d}");
-    }
-}
-
-fn cuboids(file: &str, boxes: &[[[f64; 3]; 2]]) -> Result<Scene, MeasureError> {
-    let mut text = String::new();
-    for (index, [low, high]) in boxes.iter().enumerate() {
-        let _ = writeln!(text, "o box{index}");
-        cuboid(&mut text, 8 * index + 1, *low, *high);
-    }
-    scene(file, text.as_bytes())
-}
-
 fn rod() -> Result<Scene, MeasureError> {
-    cuboids("rod.obj", &[[[-1.0, -1.0, -0.1], [1.0, 1.0, 0.0]], [[-0.9, -0.03, 0.15], [0.9, 0.03, 0.21]]])
+    boxes("rod", &[("box", [-1.0, -1.0, -0.1], [1.0, 1.0, 0.0]), ("box", [-0.9, -0.03, 0.15], [0.9, 0.03, 0.21])])
 }
 
 fn ball() -> Result<Scene, MeasureError> {
-    cuboids("far.obj", &[[[-1.0, -1.0, -0.1], [1.0, 1.0, 0.0]], [[-0.2, -0.2, 0.8], [0.2, 0.2, 1.2]]])
+    boxes("far", &[("box", [-1.0, -1.0, -0.1], [1.0, 1.0, 0.0]), ("box", [-0.2, -0.2, 0.8], [0.2, 0.2, 1.2])])
 }
 
 fn plane() -> Result<Scene, MeasureError> {
-    cuboids("plane.obj", &[[[-1.0, -0.05, -1.5], [1.0, 0.0, 1.5]], [[-0.2, 0.0, -0.4], [0.2, 0.4, 0.0]]])
+    boxes("plane", &[("box", [-1.0, -0.05, -1.5], [1.0, 0.0, 1.5]), ("box", [-0.2, 0.0, -0.4], [0.2, 0.4, 0.0])])
 }
 
 fn crevice() -> Result<Scene, MeasureError> {
-    cuboids(
-        "crevice.obj",
+    boxes(
+        "crevice",
         &[
-            [[-1.0, -0.1, -1.0], [1.0, 0.0, 1.0]],
-            [[-1.0, 0.0, -1.0], [-0.12, 0.6, 1.0]],
-            [[0.12, 0.0, -1.0], [1.0, 0.6, 1.0]],
+            ("box", [-1.0, -0.1, -1.0], [1.0, 0.0, 1.0]),
+            ("box", [-1.0, 0.0, -1.0], [-0.12, 0.6, 1.0]),
+            ("box", [0.12, 0.0, -1.0], [1.0, 0.6, 1.0]),
         ],
     )
 }
