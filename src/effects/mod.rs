@@ -9,7 +9,7 @@ pub mod focus;
 pub mod occlusion;
 pub mod outline;
 
-use crate::config::param::{Length, Param, Values};
+use crate::config::param::{Length, Param, Selector, Values};
 use crate::gpu::{StructInfo, Wgsl};
 
 /// What an effect needs to know of scene and picture to turn its values into numbers.
@@ -21,6 +21,8 @@ pub struct EffectContext<'a> {
     pub world: &'a dyn Fn(Length) -> f64,
     /// Scene units of a pixel at the nearest depth that is drawn.
     pub least_pixel_world: f64,
+    /// The bit of the objects that [`PostEffect::picks`] picks; 0 where it picks nothing of the scene, or all.
+    pub pick_bits: u32,
 }
 
 /// Where a pass of an effect draws.
@@ -64,6 +66,10 @@ pub trait PostEffect: Sync {
     fn params_info(&self) -> StructInfo;
     /// The bytes of that struct.
     fn uniform(&self, values: &Values, context: &EffectContext<'_>) -> Vec<u8>;
+    /// Which objects it changes, where not all.
+    fn picks<'a>(&self, _values: &'a Values) -> Option<&'a Selector> {
+        None
+    }
     /// How far what a pixel sees changes others, in pixels.
     fn reach_px(&self, values: &Values, context: &EffectContext<'_>) -> u32;
     /// Its passes in order.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3, Vec3};
 
-use super::{Content, Request, Resolved, effects, resolve};
+use super::{Content, Request, Resolved, effects, resolve, with_effects};
 use crate::config::{Length, Style, Value, Values};
 use crate::effects::EFFECTS;
 use crate::effects::focus::FOCUS;
@@ -103,12 +103,17 @@ impl Exact {
             listed.find(|used| used.shader == name).map(|used| &used.values)
         };
         let lengths = &drawn.lengths;
-        let occlusion = effect("ssaoPost")
-            .map(|values| Occlusion {
-                radius: lengths.world(values.length("radius")),
-                intensity: values.number("intensity"),
-            })
-            .filter(|occlusion| occlusion.radius > 0.0 && occlusion.intensity > 0.0);
+        let mut occlusions = Vec::new();
+        with_effects(&content.style, &drawn, &camera, request.size[1], |effect, values, context| {
+            if EFFECTS[effect].name() == "ssaoPost" {
+                occlusions.push(Occlusion {
+                    radius: lengths.world(values.length("radius")),
+                    intensity: values.number("intensity"),
+                    pick_bits: EFFECTS[effect].picks(values).map(|_| context.pick_bits),
+                });
+            }
+        });
+        occlusions.retain(|occlusion| occlusion.radius > 0.0 && occlusion.intensity > 0.0);
         let lens = effect("dofPost").and_then(|values| {
             let px = |length| {
                 let (px, world) = lengths.screen(length, request.size[1]);
@@ -116,7 +121,7 @@ impl Exact {
             };
             lens(values, &optics, &camera, content, &|length| lengths.world(length), &px)
         });
-        let lines: Vec<OutlineParams> = effects(&content.style, lengths, &camera, request.size[1])
+        let lines: Vec<OutlineParams> = effects(&content.style, &drawn, &camera, request.size[1])
             .into_iter()
             .filter(|effect| EFFECTS[effect.effect].name() == "outlinePost")
             .map(|effect| bytemuck::pod_read_unaligned(&effect.params))
@@ -126,7 +131,7 @@ impl Exact {
             materials: &materials,
             optics,
             lighting: &lighting,
-            occlusion,
+            occlusions: &occlusions,
             lens,
             lines: &lines,
             background: content.camera.background(request.transparent),
@@ -224,11 +229,15 @@ fn world(list: DrawList, camera: &Camera, content: &Content, materials: &[Materi
     let spheres = list.atoms.iter().map(|atom| Sphere {
         center: place(atom.position_world),
         radius: f64::from(atom.radius),
-        look: Look { color: unpacked(atom.color), material: atom.material, group: atom.group },
+        look: Look { color: unpacked(atom.color), material: atom.material, group: atom.group(), picks: atom.picks() },
     });
     let cylinders = list.connectors.iter().map(|connector| {
-        let look =
-            |color: [u32; 2]| Look { color: unpacked(color), material: connector.material, group: color[1] >> 16 };
+        let look = |color: [u32; 2]| Look {
+            color: unpacked(color),
+            material: connector.material(),
+            group: color[1] >> 16,
+            picks: connector.picks(),
+        };
         Cylinder {
             ends: [place(connector.a_world), place(connector.b_world)],
             radius: f64::from(connector.radius),
@@ -238,8 +247,8 @@ fn world(list: DrawList, camera: &Camera, content: &Content, materials: &[Materi
     let meshes = list.meshes.as_ref().map(|scene| {
         let parts = (0..).zip(&list.parts).filter_map(|(index, part)| {
             let part = part.as_ref()?;
-            let look = Look { color: unpacked(part.color), material: part.material(), group: 0 };
-            Some(Part { part: index, look, has_vertex_colors: part.color[1] >> 16 != 0 })
+            let look = Look { color: unpacked(part.color), material: part.material(), group: 0, picks: part.picks() };
+            Some(Part { part: index, look, has_vertex_colors: part.has_vertex_colors() })
         });
         Meshes { scene: Arc::clone(scene), parts: parts.collect() }
     });

@@ -6,6 +6,7 @@ pub mod lint;
 mod live;
 mod palette;
 mod pending;
+mod picks;
 mod tiles;
 mod watch;
 
@@ -18,7 +19,7 @@ use glam::DVec3;
 use crate::config::param::Param;
 use crate::config::{CatalogEntry, LightKind, ObjectKind, Role, Shadow, Style, Values};
 use crate::effects::{self, EFFECTS, EffectContext, effect_index};
-use crate::frame::objects::DrawList;
+use crate::frame::objects::{DrawList, MOST_PICKS};
 use crate::frame::{self, Aovs, Effect, FrameInput, Materials, Renderer, TargetBytes};
 use crate::gpu::PassTimes;
 use crate::providers::{CameraProvider, Lengths, LightingProvider, ShaderProvider};
@@ -26,6 +27,7 @@ use crate::scene::{AovImage, Camera, Image, Pixels, Scene};
 use crate::shading::SHADERS;
 use build::ObjectKey;
 use live::Live;
+use picks::Picks;
 
 pub use crate::frame::{MAX_SAMPLES, ShadowFilter, ShadowQuality, Step};
 pub use crate::gpu::{Counters, Gpu, GpuError};
@@ -135,6 +137,8 @@ struct Drawn {
     /// What each material is.
     used: Vec<build::MaterialUse>,
     lengths: Lengths,
+    /// The bits of the selectors of post effects that pick any object of the scene.
+    picks: u32,
     lighting: LightingProvider,
     height_px: u32,
 }
@@ -319,7 +323,7 @@ impl Engine {
         let camera = content.camera.turned(request.size, request.turn_deg.to_radians());
         let mut is_seen = [false; EFFECTS.len()];
         let mut left_out = Vec::new();
-        with_effects(&content.style, &drawn.lengths, &camera, request.size[1], |effect, values, context| {
+        with_effects(&content.style, drawn, &camera, request.size[1], |effect, values, context| {
             is_seen[effect] = true;
             let reason = EFFECTS[effect].changes_nothing(values, context);
             left_out.extend(reason.map(|reason| Step::left_out(EFFECTS[effect].name(), reason)));
@@ -427,6 +431,12 @@ impl Engine {
                 frame::MAX_SHADOWS
             ));
         }
+        let selectors = picks::selectors(style).len();
+        if selectors > MOST_PICKS {
+            exceeded.push(format!(
+                "the post effects of the style have {selectors} different selectors; only those of the first {MOST_PICKS} are drawn"
+            ));
+        }
         if self.content.as_ref().is_some_and(|content| content.camera.sees_edge_on(&content.scene, size)) {
             exceeded.push(
                 "the scene lies flat and is seen from its edge, as a line thinner than a pixel; turn it with \"camera\": \
@@ -447,16 +457,17 @@ fn resolve(content: &Content, drawn: Option<&Drawn>, height_px: u32) -> Resolved
         None => ShaderProvider::new(scene, style),
     };
     let key = ObjectKey::new(style, Arc::clone(shaders.assignment()));
-    let (list, used, lengths) = match drawn.filter(|drawn| drawn.key == key) {
-        Some(drawn) => (None, drawn.used.clone(), drawn.lengths),
+    let (list, used, lengths, picks) = match drawn.filter(|drawn| drawn.key == key) {
+        Some(drawn) => (None, drawn.used.clone(), drawn.lengths, drawn.picks),
         None => {
-            let objects = build::objects(scene, style, shaders.assignment());
-            (Some(objects.list), objects.materials, objects.lengths)
+            let picks = Picks::new(scene, &key.picking);
+            let objects = build::objects(scene, style, shaders.assignment(), &picks);
+            (Some(objects.list), objects.materials, objects.lengths, picks.any())
         }
     };
     let materials = build::materials(style, &used, camera.exposure_factor(), &lengths, height_px);
     let lighting = LightingProvider::new(style.lights.clone(), scene.bounding_sphere(), lengths);
-    Resolved { list, materials, drawn: Drawn { shaders, key, used, lengths, lighting, height_px } }
+    Resolved { list, materials, drawn: Drawn { shaders, key, used, lengths, picks, lighting, height_px } }
 }
 
 /// Calls `draw` with what a frame of the content needs beside objects and materials.
@@ -469,7 +480,7 @@ fn frame_input<T>(
 ) -> T {
     let camera = content.camera.turned(request.size, request.turn_deg.to_radians());
     let lighting = drawn.lighting.lighting(&camera);
-    let mut effects = effects(&content.style, &drawn.lengths, &camera, request.size[1]);
+    let mut effects = effects(&content.style, drawn, &camera, request.size[1]);
     for effect in &mut effects {
         let registered = EFFECTS[effect.effect];
         for (bit, feature) in registered.features().iter().enumerate() {
@@ -492,9 +503,9 @@ fn frame_input<T>(
 }
 
 /// The post effects of a style in the order of their stages, without those that change nothing.
-fn effects(style: &Style, lengths: &Lengths, camera: &Camera, height_px: u32) -> Vec<Effect> {
+fn effects(style: &Style, drawn: &Drawn, camera: &Camera, height_px: u32) -> Vec<Effect> {
     let mut effects = Vec::new();
-    with_effects(style, lengths, camera, height_px, |effect, values, context| {
+    with_effects(style, drawn, camera, height_px, |effect, values, context| {
         let registered = EFFECTS[effect];
         if registered.changes_nothing(values, context).is_none() {
             effects.push(Effect {
@@ -509,23 +520,31 @@ fn effects(style: &Style, lengths: &Lengths, camera: &Camera, height_px: u32) ->
     effects
 }
 
-/// Gives `each` the post effects that a style lists, by their places in the registry.
+/// Gives `each` the post effects that a style lists, by their places in the registry; without those whose selectors are more than
+/// objects have bits for.
 fn with_effects(
     style: &Style,
-    lengths: &Lengths,
+    drawn: &Drawn,
     camera: &Camera,
     height_px: u32,
     mut each: impl FnMut(usize, &Values, &EffectContext<'_>),
 ) {
     let pixel_world = camera.pixel_view(height_px) * if camera.orthographic { 1.0 } else { camera.near };
     let context = EffectContext {
-        screen: &|length| lengths.screen(length, height_px),
-        world: &|length| lengths.world(length),
+        screen: &|length| drawn.lengths.screen(length, height_px),
+        world: &|length| drawn.lengths.world(length),
         least_pixel_world: f64::from(pixel_world.max(f32::MIN_POSITIVE)),
+        pick_bits: 0,
     };
     for used in style.post_effects.iter().map(|&index| &style.shaders[index]) {
-        if let Some(effect) = effect_index(used.shader) {
-            each(effect, &used.values, &context);
-        }
+        let Some(effect) = effect_index(used.shader) else { continue };
+        let pick_bits = match EFFECTS[effect].picks(&used.values) {
+            Some(selector) => match drawn.key.picking.iter().position(|known| known == selector) {
+                Some(bit) => 1 << bit & drawn.picks,
+                None => continue,
+            },
+            None => 0,
+        };
+        each(effect, &used.values, &EffectContext { pick_bits, ..context });
     }
 }
