@@ -99,8 +99,7 @@ impl PostEffect for AmbientOcclusion {
         PARAMS
     }
     fn wgsl(&self) -> &'static [Wgsl] {
-        const FILES: &[Wgsl] =
-            &[wgsl!("lib/texels.wgsl"), wgsl!("lib/picks.wgsl"), wgsl!("effects/occlusion.wgsl")];
+        const FILES: &[Wgsl] = &[wgsl!("lib/texels.wgsl"), wgsl!("lib/picks.wgsl"), wgsl!("effects/occlusion.wgsl")];
         FILES
     }
     fn params_info(&self) -> StructInfo {

@@ -94,9 +94,8 @@ fn type_not_drawn() -> String {
 /// A selector as the value of a parameter.
 pub(super) fn selector(catalog: &Catalog<'_>) -> Value {
     let [drawn, not_drawn] = kinds(catalog);
-    let offered = offered(catalog).map(|(selector, doc)| {
-        json!({ "label": format!("{selector:?}"), "description": doc, "body": selector })
-    });
+    let offered = offered(catalog)
+        .map(|(selector, doc)| json!({ "label": format!("{selector:?}"), "description": doc, "body": selector }));
     let mut schema = json!({
         "pattern": patterns::selector(&[&drawn[..], &not_drawn].concat()),
         "patternErrorMessage": no_selector(catalog),

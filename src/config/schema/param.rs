@@ -107,7 +107,8 @@ pub(super) fn param(param: &Param) -> Value {
         Kind::Place(of) => {
             put("type", types(&["string", "number"]));
             put("pattern", patterns::place(of, lowest < 0.0).into());
-            let no_place = format!("Neither {} nor a length nor a selector such as \"atom[element=O]\".", of.join(", "));
+            let no_place =
+                format!("Neither {} nor a length nor a selector such as \"atom[element=O]\".", of.join(", "));
             put("patternErrorMessage", no_place.into());
             put("defaultSnippets", snippets::words_and_lengths(of));
         }
