@@ -3,7 +3,7 @@
 //!
 //! To add one: `src/effects/NAME.rs`, `shaders/effects/NAME.wgsl` with a fragment entry for each pass, a twin in
 //! `tests/twins/NAME.rs`, and one line in [`EFFECTS`]. What the entries can read, the frame declares: `view`, `params`,
-//! `geometry`, `color`, `ids`, and each earlier pass by its name; the last returns `finished(color)`.
+//! `geometry`, `color`, `ids`, the textures of objects, and each earlier pass by its name; the last returns `finished(color)`.
 
 pub mod focus;
 pub mod occlusion;

@@ -201,7 +201,7 @@ mod tests {
     #[test]
     fn lines_without_width_are_left_out() {
         let values = Values::defaults(PARAMS);
-        let context = EffectContext { screen: &|_| (0.0, 0.0), world: &|_| 0.0, least_pixel_world: 1.0 };
+        let context = EffectContext { screen: &|_| (0.0, 0.0), world: &|_| 0.0, least_pixel_world: 1.0, pick_bits: 0 };
         assert_eq!(Outline.changes_nothing(&values, &context), None);
         assert_eq!(Outline.features_used(&values), 0b110);
     }

@@ -14,7 +14,7 @@ use crate::scene::Scene;
 /// Where bits begin that say which selectors of post effects pick an object, and how many there are at the most.
 pub const PICKS_SHIFT: u32 = 17;
 /// See [`PICKS_SHIFT`].
-pub const MOST_PICKS: usize = 15;
+pub const MOST_PICKS: usize = (u32::BITS - PICKS_SHIFT) as usize;
 
 gpu_struct! {
     "lib/objects.wgsl",

@@ -130,6 +130,29 @@ fn what_an_effect_applies_to_costs_the_objects() {
 }
 
 #[test]
+fn more_selectors_than_objects_have_bits_for_are_told() {
+    let Some(mut engine) = warm() else { return };
+    let told = |engine: &mut Engine, count: usize| {
+        let names: Vec<String> = (0..count).map(|i| format!("\"o{i}\"")).collect();
+        let entry = |i: usize| {
+            format!(
+                r#", {{ "name": "o{i}", "shader": "ssaoPost", "properties": {{ "applies_to": "atom[number=..{i}]" }} }}"#
+            )
+        };
+        let shaders = SHADERS.to_owned() + &(0..count).map(entry).collect::<String>();
+        let mapping = format!(r#"{MAPPING}, "post_effects": [{}]"#, names.join(", "));
+        engine.set_style(parse(&style(CAMERA, &mapping, &shaders, LIGHTS)));
+        cost(engine);
+        engine.limits_exceeded([64, 48])
+    };
+    assert_eq!(told(&mut engine, 15), Vec::<String>::new());
+    assert_eq!(
+        told(&mut engine, 17),
+        ["the post effects of the style have 17 different selectors; only those of the first 15 are drawn"]
+    );
+}
+
+#[test]
 fn a_scheme_of_colours_costs_the_objects() {
     let Some(mut engine) = warm() else { return };
     let shaders = SHADERS.replace("\"steps\": 3", "\"steps\": 3, \"base_color\": \"chain\"");
