@@ -8,6 +8,8 @@
 // Otherwise: points around the surface are compared with depths [Prost2016 §4.2]. Mended: they lie on the normal's side; only what
 // lies within the radius counts, so that far things cast no halo; points outside the picture are left out. OCCLUSION_PUBLISHED
 // leaves the mends out, OCCLUSION_ROTATED turns the points by a matrix [Engel2009, throughout] instead of mirroring them: for measurements.
+//
+// OCCLUSION_PICKS: only what is picked is darkened; what is not still darkens others.
 
 struct OcclusionParams {
     // Scene units within which things count.
@@ -23,10 +25,13 @@ struct OcclusionParams {
     blur: u32,
     // Farthest tap in pixels.
     reach_px: f32,
-    _pad0: f32,
+    // The bit of what is picked: see lib/picks.wgsl.
+    pick_bits: u32,
 }
 
 const PI: f32 = 3.14159265;
+// Stands for occlusion where nothing is to be darkened.
+const NOT_PICKED: f32 = -1.0;
 // How much thicker than itself a sphere or cylinder is taken, and than its mean a part of a mesh: what hides behind it counts as
 // well. Of 1 and 2, and 4 for parts, the nearest to rays (ours).
 const THICKER: f32 = 2.0;
@@ -265,6 +270,7 @@ fn estimate_occlusion(@builtin(position) position: vec4<f32>) -> @location(0) ve
     let own = vec2<i32>(position.xy);
     let texel = textureLoad(geometry, own, 0);
     if !is_surface(texel) { return vec4<f32>(0.0); }
+    if OCCLUSION_PICKS && (picks_of(texel.w) & occlusion_params.pick_bits) == 0u { return vec4<f32>(NOT_PICKED, 0.0, 0.0, 0.0); }
     if OCCLUSION_HORIZONS { return vec4<f32>(horizons(own, texel), 0.0, 0.0, 0.0); }
     return vec4<f32>(hidden_points(own, texel), 0.0, 0.0, 0.0);
 }
@@ -283,6 +289,8 @@ fn denoised(own: vec2<i32>, texel: vec4<u32>) -> f32 {
         let inside = clamp(at, vec2<i32>(0), last);
         let other = textureLoad(geometry, inside, 0);
         if any(inside != at) || !is_surface(other) { continue; }
+        let estimate = textureLoad(occlusion, at, 0).x;
+        if OCCLUSION_PICKS && estimate == NOT_PICKED { continue; }
         var weight = 1.0;
         if OCCLUSION_HORIZONS {
             let off = dot(position_at(at, bitcast<f32>(other.x)) - p, g.normal_view);
@@ -290,7 +298,7 @@ fn denoised(own: vec2<i32>, texel: vec4<u32>) -> f32 {
             weight = max(1.0 - abs(off) / (PLANE_RADII * occlusion_params.radius), 0.0)
                 * max((turned - LEAST_COSINE) / (1.0 - LEAST_COSINE), 0.0);
         }
-        sum += weight * textureLoad(occlusion, at, 0).x;
+        sum += weight * estimate;
         weights += weight;
     }
     return sum / max(weights, 1e-6);
@@ -301,7 +309,8 @@ fn apply_occlusion(@builtin(position) position: vec4<f32>) -> @location(0) vec4<
     let own = vec2<i32>(position.xy);
     let texel = textureLoad(geometry, own, 0);
     var result = textureLoad(color, own, 0);
-    if is_surface(texel) {
+    let is_left = OCCLUSION_PICKS && textureLoad(occlusion, own, 0).x == NOT_PICKED;
+    if is_surface(texel) && !is_left {
         let light = max(1.0 - occlusion_params.intensity * denoised(own, texel), 0.0);
         result = vec4<f32>(result.rgb * light, result.a);
     }

@@ -21,7 +21,7 @@ struct MeshPart {
     row_x: vec4<f32>,
     row_y: vec4<f32>,
     row_z: vec4<f32>,
-    // Linear RGB as half floats.
+    // Linear RGB as half floats; then a bit that says whether the file's colours of vertices count, and picks (lib/picks.wgsl).
     color: vec2<u32>,
     // Index into the materials, and in the upper half how thick it is in its radii, as a half float.
     look: u32,
@@ -188,8 +188,7 @@ fn mesh_point(ray: Ray, index: u32) -> MeshPoint {
     point.share_b = cross(c, across) * (scale / area_squared);
     point.share_c = cross(across, b) * (scale / area_squared);
     point.base_color = unpack_linear(part.color);
-    // The spare half says whether the file's own colours count.
-    if (part.color.y >> 16u) != 0u {
+    if (part.color.y & 0x10000u) != 0u {
         let ca = unpack_vertex_color(va.color);
         point.base_color *= ca + share_b * (unpack_vertex_color(vb.color) - ca)
             + share_c * (unpack_vertex_color(vc.color) - ca);

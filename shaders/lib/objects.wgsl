@@ -6,7 +6,7 @@ struct Atom {
     // Linear RGB as half floats: (r, g), (b, unused).
     color: vec2<u32>,
     material: u32,
-    // Chain (7 bits) and residue (9 bits), as far as neighbours need them to differ.
+    // Chain (7 bits) and residue (9 bits), as far as neighbours need them to differ; above them picks (lib/picks.wgsl).
     group: u32,
 }
 
@@ -14,6 +14,7 @@ struct Connector {
     a_world: vec3<f32>,
     radius: f32,
     b_world: vec3<f32>,
+    // In the lower half; above it picks (lib/picks.wgsl).
     material: u32,
     // Colours of the halves, as an atom's; in their unused 16 bits the groups of the atoms there.
     color_a: vec2<u32>,
@@ -36,7 +37,7 @@ struct Material {
 fn atom_at(index: u32) -> Atom {
     let place = object_texel(atoms, 2u * index);
     let look = object_texel(atoms, 2u * index + 1u);
-    return Atom(bitcast<vec3<f32>>(place.xyz), bitcast<f32>(place.w), look.xy, look.z, look.w);
+    return Atom(bitcast<vec3<f32>>(place.xyz), bitcast<f32>(place.w), look.xy, look.z, look.w & 0xffffu);
 }
 
 fn connector_at(index: u32) -> Connector {
@@ -44,7 +45,7 @@ fn connector_at(index: u32) -> Connector {
     let b = object_texel(connectors, 3u * index + 1u);
     let colors = object_texel(connectors, 3u * index + 2u);
     return Connector(
-        bitcast<vec3<f32>>(a.xyz), bitcast<f32>(a.w), bitcast<vec3<f32>>(b.xyz), b.w, colors.xy, colors.zw,
+        bitcast<vec3<f32>>(a.xyz), bitcast<f32>(a.w), bitcast<vec3<f32>>(b.xyz), b.w & 0xffffu, colors.xy, colors.zw,
     );
 }
 

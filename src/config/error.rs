@@ -196,7 +196,7 @@ pub enum Problem {
         /// The length that was meant.
         hint: Hint,
     },
-    /// A key of `mapping` that is no selector.
+    /// A text that is no selector.
     #[error("selector {}: {reason}{hint}", quote(.text))]
     BadSelector {
         /// The selector as written.

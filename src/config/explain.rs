@@ -143,7 +143,7 @@ fn value_json(param: &Param, value: &Value) -> Json {
         Value::Boolean(value) => json!(value),
         Value::Numbers(list) => json!(list),
         Value::Vector(vector) => json!(vector),
-        Value::Color(_) | Value::BaseColor(_) | Value::Choice(_) => json!(shown(param, value)),
+        Value::Selector(_) | Value::Color(_) | Value::BaseColor(_) | Value::Choice(_) => json!(shown(param, value)),
     }
 }
 
@@ -156,6 +156,7 @@ fn shown(param: &Param, value: &Value) -> String {
         Value::Count(n) => n.to_string(),
         Value::Length(super::Length::Radii(n)) => return format!("{} radii", number(*n)),
         Value::Length(length) => return length.to_string(),
+        Value::Selector(selector) => selector.to_string(),
         Value::Color(color) => color.to_string(),
         Value::BaseColor(source) => source.to_string(),
         Value::Choice(i) => param.choices()[*i].to_owned(),

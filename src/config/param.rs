@@ -11,6 +11,7 @@
 
 pub use super::color::{BaseColor, Srgba};
 pub use super::length::Length;
+pub use super::selector::Selector;
 pub use super::values::Values;
 
 /// Largest magnitude of any number in a style. Ours: far above any use, and safe to square in 32-bit floats.
@@ -27,6 +28,10 @@ pub enum Kind {
     Length,
     /// One of some words, or a length.
     ChoiceOrLength(&'static [&'static str]),
+    /// One of some words, a length, or a selector.
+    Place(&'static [&'static str]),
+    /// A selector.
+    Selector,
     /// A colour.
     Color,
     /// A source of colour, or a colour.
@@ -84,6 +89,8 @@ pub enum Value {
     Count(u32),
     /// A length.
     Length(Length),
+    /// A selector.
+    Selector(Selector),
     /// A colour.
     Color(Srgba),
     /// A source of colour.
@@ -153,6 +160,16 @@ impl Param {
     /// One of some words, or a length. The default is a word.
     pub const fn choice_or_length(name: &'static str, of: &'static [&'static str], default: &'static str) -> Self {
         Self::new(name, Kind::ChoiceOrLength(of), Default::Text(default)).at_least(0.0)
+    }
+
+    /// One of some words, a length, or a selector. The default is a word.
+    pub const fn place(name: &'static str, of: &'static [&'static str], default: &'static str) -> Self {
+        Self::new(name, Kind::Place(of), Default::Text(default)).at_least(0.0)
+    }
+
+    /// A selector that may be unset.
+    pub const fn optional_selector(name: &'static str) -> Self {
+        Self::new(name, Kind::Selector, Default::Unset)
     }
 
     /// A colour, opaque by default.
@@ -253,7 +270,7 @@ impl Param {
     /// The words of a choice; empty for other kinds.
     pub const fn choices(&self) -> &'static [&'static str] {
         match self.kind {
-            Kind::Choice(of) | Kind::ChoiceOrLength(of) => of,
+            Kind::Choice(of) | Kind::ChoiceOrLength(of) | Kind::Place(of) => of,
             _ => &[],
         }
     }
@@ -262,12 +279,12 @@ impl Param {
     pub fn default_value(&self) -> Result<Value, String> {
         let bad = || Err(format!("{:?}: the default {:?} does not fit {:?}", self.name, self.default, self.kind));
         match (self.kind, self.default) {
-            (Kind::Length | Kind::Color | Kind::Vector, Default::Unset) => Ok(Value::Unset),
+            (Kind::Length | Kind::Selector | Kind::Color | Kind::Vector, Default::Unset) => Ok(Value::Unset),
             (Kind::Number, Default::Number(n)) => Ok(Value::Number(n)),
             (Kind::Count, Default::Count(n)) => Ok(Value::Count(n)),
             (Kind::Length, Default::Radii(n)) => Ok(Value::Length(Length::Radii(n))),
             (Kind::Length, Default::Text(text)) => text.parse().map(Value::Length).or_else(|_| bad()),
-            (Kind::Choice(of) | Kind::ChoiceOrLength(of), Default::Text(text)) => {
+            (Kind::Choice(of) | Kind::ChoiceOrLength(of) | Kind::Place(of), Default::Text(text)) => {
                 of.iter().position(|choice| *choice == text).map_or_else(bad, |i| Ok(Value::Choice(i)))
             }
             (Kind::Color, Default::Color(color)) => Ok(Value::Color(color)),
@@ -313,6 +330,9 @@ impl Param {
     }
 }
 
+/// What a selector is, in [`Param::facts`].
+const SELECTOR: &str = "a selector such as `atom[element=O]`";
+
 impl Param {
     /// What it holds and its default, for the manual and the editor, in Markdown.
     pub fn facts(&self) -> String {
@@ -333,6 +353,8 @@ impl Param {
             Kind::Count => numbers("a whole number"),
             Kind::Length => numbers("a length"),
             Kind::ChoiceOrLength(of) => format!("{}, or {}", words(of), numbers("a length")),
+            Kind::Place(of) => format!("{}, {}, or {SELECTOR}", words(of), numbers("a length")),
+            Kind::Selector => SELECTOR.to_owned(),
             Kind::Color => "a colour".to_owned(),
             Kind::BaseColor => format!("{}, or a colour", words(&BaseColor::NAMES)),
             Kind::Choice(of) => format!("one of {}", words(of)),
@@ -399,7 +421,14 @@ pub fn check_table(params: &[Param]) -> Vec<String> {
             }
             Ok(Value::Numbers(list)) => list,
             Ok(Value::Vector(vector)) => vector.to_vec(),
-            Ok(Value::Unset | Value::Color(_) | Value::BaseColor(_) | Value::Choice(_) | Value::Boolean(_)) => continue,
+            Ok(
+                Value::Unset
+                | Value::Selector(_)
+                | Value::Color(_)
+                | Value::BaseColor(_)
+                | Value::Choice(_)
+                | Value::Boolean(_),
+            ) => continue,
         };
         if numbers.iter().any(|n| !param.allows(*n)) {
             wrong.push(format!("{name:?}: the default is outside the range"));

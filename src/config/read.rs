@@ -10,6 +10,7 @@ use super::hint::{Hint, quote};
 use super::length::Length;
 use super::param::{Kind, LARGEST, Param, Value};
 use super::parse::parse;
+use super::selector::Selector;
 use super::source::{Source, Texts};
 use super::syntax::{Member, Node, Span, Tree};
 use super::values::Values;
@@ -127,9 +128,19 @@ impl<'a> Reader<'a> {
                 if let Some(meant) = color_of_shares(&value, node) {
                     self.warn(self.texts.place(node.span), Notice::NearlyBlack { name: param.name.to_owned(), meant });
                 }
+                if let Value::Selector(selector) = &value {
+                    self.warn_of_undrawn_type(selector, &self.texts.place(node.span));
+                }
                 values.set(index, value, self.texts.place(node.span));
             }
             Err((span, problem)) => self.wrong(span, problem),
+        }
+    }
+
+    /// Notes that a selector is for a type that this version does not draw, if it is.
+    pub(super) fn warn_of_undrawn_type(&mut self, selector: &Selector, place: &Place) {
+        if let Some(kind) = selector.kind().filter(|kind| !self.catalog.kinds.contains(kind)) {
+            self.warn(place.clone(), Notice::TypeNotDrawn { name: kind.name() });
         }
     }
 
@@ -203,6 +214,8 @@ fn read(param: &Param, node: &Node, with_hints: bool) -> Result<Value, Wrong> {
         Kind::Count => count(param, node).map(Value::Count),
         Kind::Length => length(param, node).map(Value::Length),
         Kind::ChoiceOrLength(of) => choice_or_length(param, of, node),
+        Kind::Place(of) => place(param, of, node),
+        Kind::Selector => selector(param, node).map(Value::Selector),
         Kind::Color => color(param, &[], node, with_hints).map(Value::Color),
         Kind::BaseColor => match node.text().and_then(BaseColor::from_name) {
             Some(source) => Ok(Value::BaseColor(source)),
@@ -314,6 +327,33 @@ fn choice_or_length(param: &Param, of: &'static [&'static str], node: &Node) -> 
         }),
         None => length(param, node).map(Value::Length),
     }
+}
+
+fn place(param: &Param, of: &'static [&'static str], node: &Node) -> Result<Value, Wrong> {
+    let begins_number = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+');
+    match node.text().filter(|text| !text.trim_start().starts_with(begins_number)) {
+        Some(text) => match of.iter().position(|word| *word == text) {
+            Some(index) => Ok(Value::Choice(index)),
+            None => {
+                let words = [of, &["a length"]].concat();
+                Selector::parse_or(text, &words).map(Value::Selector).map_err(|problem| (node.span, problem))
+            }
+        },
+        None if node.text().is_none() && !matches!(node.value, Tree::Number(_)) => {
+            let words: Vec<String> = of.iter().map(|word| quote(word)).collect();
+            let expected = format!("{}, a length such as \"2A\", or {SELECTOR}", words.join(", "));
+            Err((node.span, wrong_type(param.name, &expected, node)))
+        }
+        None => length(param, node).map(Value::Length),
+    }
+}
+
+/// What a selector is, in messages.
+const SELECTOR: &str = "a selector such as \"atom[element=O]\"";
+
+fn selector(param: &Param, node: &Node) -> Result<Selector, Wrong> {
+    let text = node.text().ok_or_else(|| (node.span, wrong_type(param.name, SELECTOR, node)))?;
+    Selector::parse(text).map_err(|problem| (node.span, problem))
 }
 
 fn choice(param: &Param, of: &'static [&'static str], node: &Node) -> Result<usize, Wrong> {

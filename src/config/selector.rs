@@ -251,15 +251,21 @@ fn meant(text: &str) -> Option<String> {
 }
 
 impl Selector {
-    /// Parses a key of `mapping`.
+    /// Parses a selector.
     pub fn parse(text: &str) -> Result<Self, Problem> {
+        Self::parse_or(text, &[])
+    }
+
+    /// The same where other words may stand, too, which are allowed then as types are.
+    pub(super) fn parse_or(text: &str, words: &[&str]) -> Result<Self, Problem> {
         let bad = |reason: String, hint| Problem::BadSelector { text: text.to_owned(), reason, hint };
         let trimmed = text.trim();
         let (kind_name, mut rest) = trimmed.split_at(trimmed.find('[').unwrap_or(trimmed.len()));
         let kind_name = kind_name.trim_end();
         let kind = ObjectKind::ALL.into_iter().find(|kind| kind.name() == kind_name);
         if kind.is_none() && kind_name != "*" {
-            let words = ObjectKind::ALL.into_iter().map(ObjectKind::name).chain(["*", "post_effects"]);
+            let kinds = ObjectKind::ALL.into_iter().map(|kind| -> &str { kind.name() });
+            let words = kinds.chain(["*"]).chain(words.iter().copied());
             let reason = format!("there is no type {}", super::hint::quote(kind_name));
             let hint = Hint { nearest: meant(trimmed), ..Hint::list(words.clone()) };
             return Err(bad(reason, if hint.nearest.is_some() { hint } else { Hint::new(kind_name, words) }));
@@ -453,7 +459,7 @@ mod tests {
         for (text, message) in [
             (
                 "atm",
-                "selector \"atm\": there is no type \"atm\"; did you mean \"atom\"? allowed: atom, connector, ribbon, surface, mesh, *, post_effects",
+                "selector \"atm\": there is no type \"atm\"; did you mean \"atom\"? allowed: atom, connector, ribbon, surface, mesh, *",
             ),
             (
                 "mesh[element=O]",

@@ -187,7 +187,7 @@ pub(super) fn resolve(texts: &Texts, merged: Merged, catalog: &Catalog<'_>) -> R
         shaders.declare(&mut reader, node);
     }
     let (mapping, listed_effects) = match root.get("mapping") {
-        Some(node) => read_mapping(&mut reader, &mut shaders, catalog, node),
+        Some(node) => read_mapping(&mut reader, &mut shaders, node),
         None => (Vec::new(), Vec::new()),
     };
     let basic = shaders.basic(&mut reader);
@@ -231,12 +231,7 @@ fn section(reader: &mut Reader<'_>, root: &Node, name: &str, params: &'static [P
     }
 }
 
-fn read_mapping(
-    reader: &mut Reader<'_>,
-    shaders: &mut Shaders<'_>,
-    catalog: &Catalog<'_>,
-    node: &Node,
-) -> (Vec<Rule>, Vec<EffectUse>) {
+fn read_mapping(reader: &mut Reader<'_>, shaders: &mut Shaders<'_>, node: &Node) -> (Vec<Rule>, Vec<EffectUse>) {
     let mut rules = Vec::new();
     let mut effects = Vec::new();
     for member in reader.object("mapping", node) {
@@ -247,7 +242,7 @@ fn read_mapping(
             }
             continue;
         }
-        let selector = match Selector::parse(&member.key) {
+        let selector = match Selector::parse_or(&member.key, &[POST_EFFECTS]) {
             Ok(selector) => Some(selector),
             // What is no selector may be a key of another part, whose value is then no name of a shader.
             Err(_) if reader.is_stray(&member.key) => {
@@ -269,9 +264,7 @@ fn read_mapping(
         };
         let Some(selector) = selector else { continue };
         let place = reader.texts.place(member.key_span);
-        if let Some(kind) = selector.kind().filter(|kind| !catalog.kinds.contains(kind)) {
-            reader.warn(place.clone(), Notice::TypeNotDrawn { name: kind.name() });
-        }
+        reader.warn_of_undrawn_type(&selector, &place);
         rules.push(Rule { selector, target, place });
     }
     warn_of_beaten(reader, &rules);

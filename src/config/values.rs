@@ -4,6 +4,7 @@ use super::color::{BaseColor, Srgba};
 use super::error::Place;
 use super::length::Length;
 use super::param::{Param, Value};
+use super::selector::Selector;
 
 /// Where a value comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -116,6 +117,15 @@ impl Values {
     pub fn optional_length(&self, name: &str) -> Option<Length> {
         self.expect(name, "optional length", |value| match value {
             Value::Length(length) => Some(Some(*length)),
+            Value::Unset => Some(None),
+            _ => None,
+        })
+    }
+
+    /// A selector that may be unset.
+    pub fn optional_selector(&self, name: &str) -> Option<&Selector> {
+        self.expect(name, "optional selector", |value| match value {
+            Value::Selector(selector) => Some(Some(selector)),
             Value::Unset => Some(None),
             _ => None,
         })

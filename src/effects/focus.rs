@@ -7,14 +7,14 @@
 use glam::DVec3;
 
 use super::{EffectContext, EffectPass, PassTarget, PostEffect};
-use crate::config::param::{Length, Param, Value, Values};
+use crate::config::param::{Length, Param, Selector, Value, Values};
 use crate::gpu::{GpuStruct, StructInfo, Wgsl};
 use crate::{gpu_struct, wgsl};
 
 /// Values of `method`.
 const METHODS: &[&str] = &["gather", "five_layer"];
 
-/// Values of `focus` beside lengths.
+/// Values of `focus` beside lengths and selectors.
 const FOCUS: &[&str] = &["layers", "center"];
 
 /// Values of `show`.
@@ -43,8 +43,8 @@ pub const PARAMS: &[Param] = &[
         .range(0.0, 1.0)
         .doc("Depths from 0, the sphere's nearest point, to 1: sharp between the middle two, blurred beyond the others.")
         .examples(&["[0, 0, 0.3, 0.6]", "[0.3, 0.5, 0.6, 0.9]", "[0.4, 0.7, 1, 1]"]),
-    Param::choice_or_length("focus", FOCUS, "layers")
-        .doc("What is sharp: layers, or as through a lens the scene's center, or what lies this far from the camera.")
+    Param::place("focus", FOCUS, "layers")
+        .doc("What is sharp: layers, or as through a lens the scene's center, what lies this far from the camera, or what is picked.")
         .examples(&[r#""layers""#, r#""center""#]),
     Param::length("blur", "16pt")
         .doc("Width of the blur beyond layers, or through a lens at the first or last of them, whichever is farther; at most 135pt.")
@@ -85,6 +85,7 @@ impl Circles {
         let layer = |layer: f64| measure(depths.middle + (2.0 * layer - 1.0) * depths.radius);
         let focus = match values.get("focus") {
             Some(Value::Length(length)) => Some((context.world)(*length)),
+            Some(Value::Selector(_)) => Some(context.looked_at.unwrap_or(depths.middle)),
             Some(Value::Choice(index)) if FOCUS[*index] == "center" => Some(depths.middle),
             _ => None,
         };
@@ -218,6 +219,12 @@ impl PostEffect for Focus {
             tiles: (reach_px / f64::from(TILE_PX)).ceil() as u32 + 1,
         })
         .to_vec()
+    }
+    fn looks_at<'a>(&self, values: &'a Values) -> Option<&'a Selector> {
+        match values.get("focus") {
+            Some(Value::Selector(selector)) => Some(selector),
+            _ => None,
+        }
     }
     fn reach_px(&self, values: &Values, context: &EffectContext<'_>) -> u32 {
         let most_px = Circles::new(values, context).map_or(0.0, |circles| circles.most_px[0].max(circles.most_px[1]));

@@ -3,13 +3,13 @@
 //!
 //! To add one: `src/effects/NAME.rs`, `shaders/effects/NAME.wgsl` with a fragment entry for each pass, a twin in
 //! `tests/twins/NAME.rs`, and one line in [`EFFECTS`]. What the entries can read, the frame declares: `view`, `params`,
-//! `geometry`, `color`, `ids`, and each earlier pass by its name; the last returns `finished(color)`.
+//! `geometry`, `color`, `ids`, the textures of objects, and each earlier pass by its name; the last returns `finished(color)`.
 
 pub mod focus;
 pub mod occlusion;
 pub mod outline;
 
-use crate::config::param::{Length, Param, Values};
+use crate::config::param::{Length, Param, Selector, Values};
 use crate::gpu::{StructInfo, Wgsl};
 
 /// Where a scene lies before a camera.
@@ -50,6 +50,10 @@ pub struct EffectContext<'a> {
     pub least_pixel_world: f64,
     /// Where the scene lies.
     pub depths: Depths,
+    /// The bit of the objects that [`PostEffect::picks`] picks; 0 where it picks nothing of the scene, or all.
+    pub pick_bits: u32,
+    /// Depth of what [`PostEffect::looks_at`] picks, in the middle of it; none where that is nothing.
+    pub looked_at: Option<f64>,
 }
 
 /// Where a pass of an effect draws.
@@ -93,6 +97,14 @@ pub trait PostEffect: Sync {
     fn params_info(&self) -> StructInfo;
     /// The bytes of that struct.
     fn uniform(&self, values: &Values, context: &EffectContext<'_>) -> Vec<u8>;
+    /// Which objects it changes, where not all.
+    fn picks<'a>(&self, _values: &'a Values) -> Option<&'a Selector> {
+        None
+    }
+    /// Whose place its numbers depend on.
+    fn looks_at<'a>(&self, _values: &'a Values) -> Option<&'a Selector> {
+        None
+    }
     /// How far what a pixel sees changes others, in pixels.
     fn reach_px(&self, values: &Values, context: &EffectContext<'_>) -> u32;
     /// Its passes with such features, in order.

@@ -4,7 +4,7 @@
 //! `shaders/effects/occlusion.wgsl`. Its exact form, by rays: `src/reference/occlusion.rs`. Twin: `tests/twins/occlusion.rs`.
 
 use super::{EffectContext, EffectPass, PassTarget, PostEffect};
-use crate::config::param::{Param, Values};
+use crate::config::param::{Param, Selector, Values};
 use crate::gpu::{GpuStruct, StructInfo, Wgsl};
 use crate::{gpu_struct, wgsl};
 
@@ -39,7 +39,13 @@ pub const PARAMS: &[Param] = &[
         .unit("pixels")
         .doc("Side of the square over which noise is evened out; 1 leaves it.")
         .examples(&["1", "4", "8"]),
+    Param::optional_selector(APPLIES_TO)
+        .doc("What is darkened, all unless set; what is not still darkens what lies near it.")
+        .examples(&[r#""atom""#, r#""*[kind=ligand]""#]),
 ];
+
+/// The parameter that says what is darkened.
+const APPLIES_TO: &str = "applies_to";
 
 gpu_struct! {
     "effects/occlusion.wgsl",
@@ -59,8 +65,8 @@ gpu_struct! {
         pub blur: u32,
         /// Farthest tap in pixels.
         pub reach_px: f32,
-        /// Padding.
-        pub _pad0: f32,
+        /// The bit of what is picked.
+        pub pick_bits: u32,
     }
 }
 
@@ -93,7 +99,12 @@ impl PostEffect for AmbientOcclusion {
         PARAMS
     }
     fn wgsl(&self, _features: u32) -> &'static [Wgsl] {
-        const FILES: &[Wgsl] = &[wgsl!("lib/noise.wgsl"), wgsl!("lib/texels.wgsl"), wgsl!("effects/occlusion.wgsl")];
+        const FILES: &[Wgsl] = &[
+            wgsl!("lib/noise.wgsl"),
+            wgsl!("lib/texels.wgsl"),
+            wgsl!("lib/picks.wgsl"),
+            wgsl!("effects/occlusion.wgsl"),
+        ];
         FILES
     }
     fn params_info(&self) -> StructInfo {
@@ -110,9 +121,12 @@ impl PostEffect for AmbientOcclusion {
             steps,
             blur: values.count("blur"),
             reach_px: farthest_px(values, context) as f32,
-            _pad0: 0.0,
+            pick_bits: context.pick_bits,
         })
         .to_vec()
+    }
+    fn picks<'a>(&self, values: &'a Values) -> Option<&'a Selector> {
+        values.optional_selector(APPLIES_TO)
     }
     fn reach_px(&self, values: &Values, context: &EffectContext<'_>) -> u32 {
         farthest_px(values, context).ceil() as u32 + values.count("blur")
@@ -132,17 +146,21 @@ impl PostEffect for AmbientOcclusion {
         if values.number("intensity") <= 0.0 {
             return Some("its intensity is 0");
         }
+        if self.picks(values).is_some() && context.pick_bits == 0 {
+            return Some("it applies to nothing in this scene");
+        }
         (farthest_px(values, context) < LEAST_RADIUS_PX).then_some("its radius is less than 1.5 pixels anywhere")
     }
     fn features(&self) -> &'static [&'static str] {
-        &["OCCLUSION_HORIZONS", "OCCLUSION_THIN", PUBLISHED, ROTATED]
+        &["OCCLUSION_HORIZONS", "OCCLUSION_THIN", PUBLISHED, ROTATED, "OCCLUSION_PICKS"]
     }
     fn features_used(&self, values: &Values) -> u32 {
-        match values.choice("method") {
+        let of_method = match values.choice("method") {
             "bitmask" => 0b11,
             "gtao" => 0b01,
             _ => 0,
-        }
+        };
+        of_method | u32::from(self.picks(values).is_some()) << 4
     }
 }
 

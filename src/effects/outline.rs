@@ -203,7 +203,14 @@ mod tests {
     fn lines_without_width_are_left_out() {
         let values = Values::defaults(PARAMS);
         let depths = Depths { orthographic: false, near: 1.0, middle: 2.0, radius: 1.0, pixel_world: 1.0 };
-        let context = EffectContext { screen: &|_| (0.0, 0.0), world: &|_| 0.0, least_pixel_world: 1.0, depths };
+        let context = EffectContext {
+            screen: &|_| (0.0, 0.0),
+            world: &|_| 0.0,
+            least_pixel_world: 1.0,
+            depths,
+            looked_at: None,
+            pick_bits: 0,
+        };
         assert_eq!(Outline.changes_nothing(&values, &context), None);
         assert_eq!(Outline.features_used(&values), 0b110);
     }

@@ -7,22 +7,27 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::palette::{AtomColors, PartColors};
-use crate::config::{AtomRadius, BaseColor, Geometry, Origin, ShaderUse, Style, Value, Values};
+use super::picks::{self, Picks};
+use crate::config::{AtomRadius, BaseColor, Geometry, Origin, Selector, ShaderUse, Style, Value, Values};
 use crate::effects::outline::group_word;
 use crate::frame::Materials;
-use crate::frame::mesh::MeshPart;
-use crate::frame::objects::{self, Connector, DrawList, Material, pack_linear, pack_linear_and_group};
+use crate::frame::mesh::{MeshPart, VERTEX_COLORS};
+use crate::frame::objects::{
+    self, Connector, DrawList, MOST_PICKS, Material, PICKS_SHIFT, pack_linear, pack_linear_and_group,
+};
 use crate::providers::{Assignment, Lengths};
 use crate::scene::{Atom, Bond, MeshMaterial, Molecule, MoleculeCopy, Scene};
 use crate::shading::{self, MaterialContext, SHADERS};
 
-/// Whatever of a style decides which objects are drawn, how large, and in which colours of their own. Styles that are
-/// equal in it draw the same objects, and differ in materials at the most.
+/// Whatever of a style decides which objects are drawn, how large, in which colours of their own, and which of them post effects
+/// pick. Styles that are equal in it draw the same objects, and differ in materials at the most.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObjectKey {
     assignment: Arc<Assignment>,
     geometry: Geometry,
     schemes: Vec<BaseColor>,
+    /// Selectors of post effects, in the order of their bits.
+    pub picking: Vec<Selector>,
 }
 
 impl ObjectKey {
@@ -32,6 +37,7 @@ impl ObjectKey {
             assignment,
             geometry: style.geometry.clone(),
             schemes: style.shaders.iter().map(own_scheme).collect(),
+            picking: picks::selectors(style).into_iter().take(MOST_PICKS).cloned().collect(),
         }
     }
 }
@@ -58,13 +64,15 @@ pub struct MaterialUse {
 /// Steps in which a file's finish is kept: finer than is seen, and coarse enough that parts share materials.
 const FINISH_STEPS: f32 = 64.0;
 
-/// Makes every object of the scene that the style draws; `assignment` is what the style's rules come to.
-pub fn objects(scene: &Arc<Scene>, style: &Style, assignment: &Assignment) -> Objects {
+/// Makes every object of the scene that the style draws; `assignment` is what the style's rules come to, and `picks` what the
+/// selectors of its post effects do.
+pub fn objects(scene: &Arc<Scene>, style: &Style, assignment: &Assignment, picks: &Picks) -> Objects {
     // A scene of huge or tiny meshes has a unit of its own.
     let lengths = |median| Lengths::of_scene(scene, &style.geometry, median);
-    let (mut objects, mut materials) = molecule_objects(&scene.molecule, scene.unit, style, assignment, &lengths);
+    let (mut objects, mut materials) =
+        molecule_objects(&scene.molecule, scene.unit, style, assignment, picks, &lengths);
     if !scene.assembly.is_empty() {
-        add_parts(&mut objects.list, &mut materials, scene, style, assignment);
+        add_parts(&mut objects.list, &mut materials, scene, style, assignment, picks);
     }
     Objects { materials: materials.used, ..objects }
 }
@@ -76,6 +84,7 @@ fn molecule_objects(
     unit: f64,
     style: &Style,
     assignment: &Assignment,
+    picks: &Picks,
     lengths: &dyn Fn(Option<f64>) -> Lengths,
 ) -> (Objects, MaterialNumbers) {
     let geometry_lengths = lengths(None);
@@ -120,7 +129,7 @@ fn molecule_objects(
                 radius,
                 color: pack_linear(colors.of(molecule, atom, own_scheme(&style.shaders[used]))),
                 material: materials.of(plain_use(used)),
-                group: group(atom),
+                group: group(atom) | picks.of_atom(index as usize) << PICKS_SHIFT,
             });
             atom_of.extend(is_copied.then_some(index));
         }
@@ -128,8 +137,8 @@ fn molecule_objects(
 
     let bond_radius = lengths.world(style.geometry.bond_radius) as f32;
     let neighbours = Neighbours::new(molecule, style.geometry.bond_orders);
-    let bonds = molecule.bonds.iter().zip(&assignment.connectors);
-    for (bond, used) in bonds.take(if bond_radius > 0.0 { usize::MAX } else { 0 }) {
+    let bonds = molecule.bonds.iter().zip(&assignment.connectors).enumerate();
+    for (index, (bond, used)) in bonds.take(if bond_radius > 0.0 { usize::MAX } else { 0 }) {
         let Some(used) = used.map(|index| index as usize) else { continue };
         let (a, b) = (&molecule.atoms[bond.a as usize], &molecule.atoms[bond.b as usize]);
         let length = a.position.distance(b.position);
@@ -141,7 +150,7 @@ fn molecule_objects(
             continue;
         }
         let scheme = own_scheme(&style.shaders[used]);
-        let material = materials.of(plain_use(used));
+        let material = materials.of(plain_use(used)) | picks.of_connector(index) << PICKS_SHIFT;
         let toward = || neighbours.direction(molecule, bond);
         for (offset, radius) in strands(b.position - a.position, order, bond_radius, toward) {
             list.connectors.push(Connector {
@@ -164,7 +173,7 @@ fn molecule_objects(
 /// The objects of a molecule that stands alone.
 pub fn objects_of(molecule: &Molecule, style: &Style, assignment: &Assignment) -> Objects {
     let lengths = |median| Lengths::new(molecule.bounding_sphere(), median);
-    let (objects, materials) = molecule_objects(molecule, 1.0, style, assignment, &lengths);
+    let (objects, materials) = molecule_objects(molecule, 1.0, style, assignment, &Picks::default(), &lengths);
     Objects { materials: materials.used, ..objects }
 }
 
@@ -175,10 +184,11 @@ fn add_parts(
     scene: &Arc<Scene>,
     style: &Style,
     assignment: &Assignment,
+    picks: &Picks,
 ) {
     let assembly = &scene.assembly;
     let colors = PartColors::new(assembly);
-    let parts = assembly.parts.iter().zip(&assignment.parts).map(|(part, used)| {
+    let parts = assembly.parts.iter().zip(&assignment.parts).enumerate().map(|(index, (part, used))| {
         let used = used.map(|index| index as usize)?;
         let own = own_scheme(&style.shaders[used]);
         let of_file = part.material.and_then(|material| assembly.materials.get(material as usize));
@@ -186,8 +196,11 @@ fn add_parts(
         let shape = &assembly.shapes[part.shape as usize];
         let material = materials.of(MaterialUse { shader: used, finish });
         let mut color = pack_linear(colors.of(assembly, part, own));
-        // Colours of vertices are the file's, too: the spare half says that they count.
-        color[1] |= u32::from(PartColors::is_of_file(own) && !shape.colors.is_empty()) << 16;
+        // Colours of vertices are the file's, too.
+        if PartColors::is_of_file(own) && !shape.colors.is_empty() {
+            color[1] |= VERTEX_COLORS;
+        }
+        color[1] |= picks.of_part(index) << PICKS_SHIFT;
         Some(MeshPart::new(&part.world_from_shape, color, material, shape))
     });
     list.parts = parts.collect();

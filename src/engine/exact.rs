@@ -95,17 +95,18 @@ impl Exact {
         let optics = Optics::new(&camera, request.size);
         let materials = shades(&materials, &content.style, &drawn.used);
         let world = world(list.unwrap_or_default(), &camera, content, &materials, &optics);
-        let (mut occlusion, mut lens, mut layers, mut lines) = (None, None, None, Vec::new());
-        with_effects(content, &drawn.lengths, &camera, request.size[1], |effect, values, context| {
+        let (mut occlusions, mut lens, mut layers, mut lines) = (Vec::new(), None, None, Vec::new());
+        with_effects(content, &drawn, &camera, request.size[1], |effect, values, context| {
             let registered = EFFECTS[effect];
             if registered.changes_nothing(values, context).is_some() {
                 return;
             }
             match registered.name() {
-                "ssaoPost" => {
-                    let (radius, intensity) = ((context.world)(values.length("radius")), values.number("intensity"));
-                    occlusion = Some(Occlusion { radius, intensity });
-                }
+                "ssaoPost" => occlusions.push(Occlusion {
+                    radius: (context.world)(values.length("radius")),
+                    intensity: values.number("intensity"),
+                    pick_bits: registered.picks(values).map(|_| context.pick_bits),
+                }),
                 "dofPost" => {
                     let circles = Circles::new(values, context);
                     match values.choice("show") {
@@ -125,7 +126,7 @@ impl Exact {
             materials: &materials,
             optics,
             lighting: &lighting,
-            occlusion,
+            occlusions: &occlusions,
             lens,
             layers,
             lines: &lines,
@@ -195,11 +196,15 @@ fn world(list: DrawList, camera: &Camera, content: &Content, materials: &[Materi
     let spheres = list.atoms.iter().map(|atom| Sphere {
         center: place(atom.position_world),
         radius: f64::from(atom.radius),
-        look: Look { color: unpacked(atom.color), material: atom.material, group: atom.group },
+        look: Look { color: unpacked(atom.color), material: atom.material, group: atom.group(), picks: atom.picks() },
     });
     let cylinders = list.connectors.iter().map(|connector| {
-        let look =
-            |color: [u32; 2]| Look { color: unpacked(color), material: connector.material, group: color[1] >> 16 };
+        let look = |color: [u32; 2]| Look {
+            color: unpacked(color),
+            material: connector.material(),
+            group: color[1] >> 16,
+            picks: connector.picks(),
+        };
         Cylinder {
             ends: [place(connector.a_world), place(connector.b_world)],
             radius: f64::from(connector.radius),
@@ -209,8 +214,8 @@ fn world(list: DrawList, camera: &Camera, content: &Content, materials: &[Materi
     let meshes = list.meshes.as_ref().map(|scene| {
         let parts = (0..).zip(&list.parts).filter_map(|(index, part)| {
             let part = part.as_ref()?;
-            let look = Look { color: unpacked(part.color), material: part.material(), group: 0 };
-            Some(Part { part: index, look, has_vertex_colors: part.color[1] >> 16 != 0 })
+            let look = Look { color: unpacked(part.color), material: part.material(), group: 0, picks: part.picks() };
+            Some(Part { part: index, look, has_vertex_colors: part.has_vertex_colors() })
         });
         Meshes { scene: Arc::clone(scene), parts: parts.collect() }
     });

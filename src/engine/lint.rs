@@ -58,7 +58,7 @@ fn wide_outlines(style: &Style, scene: &Scene) -> Vec<Warning> {
         *of_atoms = of_atoms.min(atom.radius);
     }
     for connector in &objects.list.connectors {
-        let [_, of_connectors] = &mut smallest[connector.material as usize];
+        let [_, of_connectors] = &mut smallest[connector.material() as usize];
         *of_connectors = of_connectors.min(connector.radius);
     }
     let mut warnings = Vec::new();

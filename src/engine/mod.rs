@@ -6,9 +6,11 @@ pub mod lint;
 mod live;
 mod palette;
 mod pending;
+mod picks;
 mod tiles;
 mod watch;
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
@@ -18,14 +20,15 @@ use glam::DVec3;
 use crate::config::param::Param;
 use crate::config::{CatalogEntry, LightKind, ObjectKind, Role, Shadow, Style, Values};
 use crate::effects::{self, Depths, EFFECTS, EffectContext, effect_index};
-use crate::frame::objects::DrawList;
+use crate::frame::objects::{DrawList, MOST_PICKS};
 use crate::frame::{self, Aovs, Effect, FrameInput, Materials, Renderer, TargetBytes};
 use crate::gpu::PassTimes;
-use crate::providers::{CameraProvider, Lengths, LightingProvider, ShaderProvider};
-use crate::scene::{AovImage, Camera, Image, Pixels, Scene};
+use crate::providers::{CameraProvider, Lengths, LightingProvider, ShaderProvider, picked};
+use crate::scene::{AovImage, Camera, Image, Pixels, Scene, Sphere};
 use crate::shading::SHADERS;
 use build::ObjectKey;
 use live::Live;
+use picks::Picks;
 
 pub use crate::frame::{MAX_SAMPLES, ShadowFilter, ShadowQuality, Step};
 pub use crate::gpu::{Counters, Gpu, GpuError};
@@ -135,6 +138,10 @@ struct Drawn {
     /// What each material is.
     used: Vec<build::MaterialUse>,
     lengths: Lengths,
+    /// The bits of the selectors of post effects that pick any object of the scene.
+    picks: u32,
+    /// Where that lies of which post effects need the place, by their numbers among the shaders.
+    looked_at: BTreeMap<usize, Sphere>,
     lighting: LightingProvider,
     height_px: u32,
 }
@@ -319,7 +326,7 @@ impl Engine {
         let camera = content.camera.turned(request.size, request.turn_deg.to_radians());
         let mut is_seen = [false; EFFECTS.len()];
         let mut left_out = Vec::new();
-        with_effects(content, &drawn.lengths, &camera, request.size[1], |effect, values, context| {
+        with_effects(content, drawn, &camera, request.size[1], |effect, values, context| {
             is_seen[effect] = true;
             let reason = EFFECTS[effect].changes_nothing(values, context);
             left_out.extend(reason.map(|reason| Step::left_out(EFFECTS[effect].name(), reason)));
@@ -419,6 +426,12 @@ impl Engine {
                 frame::MAX_SHADOWS
             ));
         }
+        let selectors = picks::selectors(style).len();
+        if selectors > MOST_PICKS {
+            exceeded.push(format!(
+                "the post effects of the style have {selectors} different selectors; only those of the first {MOST_PICKS} are drawn"
+            ));
+        }
         if self.content.as_ref().is_some_and(|content| content.camera.sees_edge_on(&content.scene, size)) {
             exceeded.push(
                 "the scene lies flat and is seen from its edge, as a line thinner than a pixel; turn it with \"camera\": \
@@ -439,16 +452,28 @@ fn resolve(content: &Content, drawn: Option<&Drawn>, height_px: u32) -> Resolved
         None => ShaderProvider::new(scene, style),
     };
     let key = ObjectKey::new(style, Arc::clone(shaders.assignment()));
-    let (list, used, lengths) = match drawn.filter(|drawn| drawn.key == key) {
-        Some(drawn) => (None, drawn.used.clone(), drawn.lengths),
+    let (list, used, lengths, picks) = match drawn.filter(|drawn| drawn.key == key) {
+        Some(drawn) => (None, drawn.used.clone(), drawn.lengths, drawn.picks),
         None => {
-            let objects = build::objects(scene, style, shaders.assignment());
-            (Some(objects.list), objects.materials, objects.lengths)
+            let picks = Picks::new(scene, &key.picking);
+            let objects = build::objects(scene, style, shaders.assignment(), &picks);
+            (Some(objects.list), objects.materials, objects.lengths, picks.any())
         }
     };
     let materials = build::materials(style, &used, camera.exposure_factor(), &lengths, height_px);
     let lighting = LightingProvider::new(style.lights.clone(), scene.bounding_sphere(), lengths);
-    Resolved { list, materials, drawn: Drawn { shaders, key, used, lengths, lighting, height_px } }
+    let looked_at = looked_at(scene, style);
+    Resolved { list, materials, drawn: Drawn { shaders, key, used, lengths, picks, looked_at, lighting, height_px } }
+}
+
+/// Where that lies of which a post effect of the style needs the place, by the effect's number among the shaders.
+fn looked_at(scene: &Scene, style: &Style) -> BTreeMap<usize, Sphere> {
+    let place = |&index: &usize| {
+        let used = &style.shaders[index];
+        let selector = EFFECTS[effect_index(used.shader)?].looks_at(&used.values)?;
+        Some((index, picked(scene, selector).bounds(scene)?))
+    };
+    style.post_effects.iter().filter_map(place).collect()
 }
 
 /// Calls `draw` with what a frame of the content needs beside objects and materials.
@@ -461,7 +486,7 @@ fn frame_input<T>(
 ) -> T {
     let camera = content.camera.turned(request.size, request.turn_deg.to_radians());
     let lighting = drawn.lighting.lighting(&camera);
-    let mut effects = effects(content, &drawn.lengths, &camera, request.size[1]);
+    let mut effects = effects(content, drawn, &camera, request.size[1]);
     for effect in &mut effects {
         let registered = EFFECTS[effect.effect];
         for (bit, feature) in registered.features().iter().enumerate() {
@@ -484,9 +509,9 @@ fn frame_input<T>(
 }
 
 /// The post effects of the content's style in the order of their stages, without those that change nothing.
-fn effects(content: &Content, lengths: &Lengths, camera: &Camera, height_px: u32) -> Vec<Effect> {
+fn effects(content: &Content, drawn: &Drawn, camera: &Camera, height_px: u32) -> Vec<Effect> {
     let mut effects = Vec::new();
-    with_effects(content, lengths, camera, height_px, |effect, values, context| {
+    with_effects(content, drawn, camera, height_px, |effect, values, context| {
         let registered = EFFECTS[effect];
         if registered.changes_nothing(values, context).is_none() {
             effects.push(Effect {
@@ -501,10 +526,11 @@ fn effects(content: &Content, lengths: &Lengths, camera: &Camera, height_px: u32
     effects
 }
 
-/// Gives `each` the post effects that the content's style lists, by their places in the registry.
+/// Gives `each` the post effects that the content's style lists, by their places in the registry; without those whose selectors
+/// are more than objects have bits for.
 fn with_effects(
     content: &Content,
-    lengths: &Lengths,
+    drawn: &Drawn,
     camera: &Camera,
     height_px: u32,
     mut each: impl FnMut(usize, &Values, &EffectContext<'_>),
@@ -521,13 +547,24 @@ fn with_effects(
     };
     let context = EffectContext {
         depths,
-        screen: &|length| lengths.screen(length, height_px),
-        world: &|length| lengths.world(length),
+        screen: &|length| drawn.lengths.screen(length, height_px),
+        world: &|length| drawn.lengths.world(length),
         least_pixel_world: f64::from(pixel_world(camera.near).max(f32::MIN_POSITIVE)),
+        pick_bits: 0,
+        looked_at: None,
     };
-    for used in content.style.post_effects.iter().map(|&index| &content.style.shaders[index]) {
-        if let Some(effect) = effect_index(used.shader) {
-            each(effect, &used.values, &context);
-        }
+    for &index in &content.style.post_effects {
+        let used = &content.style.shaders[index];
+        let Some(effect) = effect_index(used.shader) else { continue };
+        let pick_bits = match EFFECTS[effect].picks(&used.values) {
+            Some(selector) => match drawn.key.picking.iter().position(|known| known == selector) {
+                Some(bit) => 1 << bit & drawn.picks,
+                None => continue,
+            },
+            None => 0,
+        };
+        let depth = |sphere: &Sphere| f64::from(-camera.view_from_world.transform_point3(sphere.center).z);
+        let looked_at = drawn.looked_at.get(&index).map(depth);
+        each(effect, &used.values, &EffectContext { pick_bits, looked_at, ..context });
     }
 }

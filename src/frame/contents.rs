@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::objects::{self, DrawList, Material, ObjectBuffers};
+use super::objects::{self, Connector, DrawList, Material, ObjectBuffers};
 use super::occlusion::Reach;
 use super::shade::{ShadeKey, ShaderNeeds};
 use super::shadow::ShadowFilter;
@@ -76,7 +76,7 @@ impl ObjectNeeds {
                 meshes: list.drawn_parts().next().is_some(),
             },
             atom_material: common(list.atoms.iter().map(|atom| atom.material)),
-            connector_material: common(list.connectors.iter().map(|connector| connector.material)),
+            connector_material: common(list.connectors.iter().map(Connector::material)),
             part_material: common(list.drawn_parts().map(|part| part.material())),
         }
     }

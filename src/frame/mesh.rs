@@ -9,6 +9,7 @@ use std::sync::{Arc, Weak};
 
 use glam::Affine3A;
 
+use super::objects::PICKS_SHIFT;
 use super::texels::{self, KeptTexture, OBJECT_ROW};
 use crate::gpu::{Gpu, GpuError};
 use crate::gpu_struct;
@@ -43,7 +44,7 @@ gpu_struct! {
         pub row_y: [f32; 4],
         /// To world z.
         pub row_z: [f32; 4],
-        /// Linear RGB as half floats.
+        /// Linear RGB as half floats; in the half that is left, whether colours of vertices count and which selectors pick it.
         pub color: [u32; 2],
         /// Index into the materials, and in the upper half how thick it is in its radii, as a half float.
         pub look: u32,
@@ -66,6 +67,9 @@ gpu_struct! {
         pub _pad0: u32,
     }
 }
+
+/// The bit of a part's colour that says that the colours of its vertices count.
+pub const VERTEX_COLORS: u32 = 1 << 16;
 
 /// Thicker than any radius reaches, and a half float.
 const MOST_THICKNESS_RADII: f32 = 6e4;
@@ -91,6 +95,16 @@ impl MeshPart {
     /// Index into the materials.
     pub fn material(&self) -> u32 {
         self.look & 0xffff
+    }
+
+    /// Whether the colours of its vertices count.
+    pub fn has_vertex_colors(&self) -> bool {
+        self.color[1] & VERTEX_COLORS != 0
+    }
+
+    /// A bit for each selector that picks it.
+    pub fn picks(&self) -> u32 {
+        self.color[1] >> PICKS_SHIFT
     }
 }
 

@@ -11,6 +11,11 @@ use crate::gpu::{Gpu, GpuError};
 use crate::gpu_struct;
 use crate::scene::Scene;
 
+/// Where bits begin that say which selectors of post effects pick an object, and how many there are at the most.
+pub const PICKS_SHIFT: u32 = 17;
+/// See [`PICKS_SHIFT`].
+pub const MOST_PICKS: usize = (u32::BITS - PICKS_SHIFT) as usize;
+
 gpu_struct! {
     "lib/objects.wgsl",
     /// A sphere.
@@ -23,7 +28,7 @@ gpu_struct! {
         pub color: [u32; 2],
         /// Index into the materials.
         pub material: u32,
-        /// Its group, 16 bits: see [`crate::effects::outline::group_word`].
+        /// Its group, 16 bits: see [`crate::effects::outline::group_word`]; above it which selectors pick it.
         pub group: u32,
     }
 }
@@ -38,7 +43,7 @@ gpu_struct! {
         pub radius: f32,
         /// The other end.
         pub b_world: [f32; 3],
-        /// Index into the materials.
+        /// Index into the materials, and in the upper half which selectors pick it.
         pub material: u32,
         /// Linear RGB of the half at `a`, as half floats, and above them the group of the atom there.
         pub color_a: [u32; 2],
@@ -63,6 +68,30 @@ gpu_struct! {
         pub shader: u32,
         /// Which of that shader's parameter sets.
         pub index: u32,
+    }
+}
+
+impl Atom {
+    /// Its group.
+    pub fn group(&self) -> u32 {
+        self.group & 0xffff
+    }
+
+    /// A bit for each selector that picks it.
+    pub fn picks(&self) -> u32 {
+        self.group >> PICKS_SHIFT
+    }
+}
+
+impl Connector {
+    /// Index into the materials.
+    pub fn material(&self) -> u32 {
+        self.material & 0xffff
+    }
+
+    /// A bit for each selector that picks it.
+    pub fn picks(&self) -> u32 {
+        self.material >> PICKS_SHIFT
     }
 }
 

@@ -277,6 +277,8 @@ pub fn effect_module(key: &EffectKey) -> Module {
     let mut bindings = format!(
         "const ORTHOGRAPHIC: bool = {};\nconst FINISH: u32 = {finish}u;\n\
          @group(0) @binding(0) var<uniform> view: View;\n\
+         @group(0) @binding(1) var atoms: texture_2d<u32>;\n\
+         @group(0) @binding(2) var connectors: texture_2d<u32>;\n\
          @group(0) @binding(8) var mesh_parts: texture_2d<u32>;\n\
          @group(1) @binding(0) var<uniform> {}_params: {};\n\
          @group(1) @binding(1) var<uniform> output: Output;\n\

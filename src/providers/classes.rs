@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 use std::hash::Hash;
 
-use crate::config::{Attribute, AttributeSet, ObjectKind, Style};
+use crate::config::{Attribute, AttributeSet, ObjectKind, Selector, Style};
 use crate::scene::{Bond, Molecule, Scene};
 
 /// Objects of a scene by what selectors can ask of them.
@@ -38,6 +38,13 @@ pub(super) fn asked(style: &Style, kinds: &[ObjectKind]) -> AttributeSet {
         let used = style.attributes_used(*kind);
         kind.attributes().iter().filter(|of| used.contains(**of)).for_each(|of| asked.insert(*of));
     }
+    asked
+}
+
+/// What a selector asks of objects of a type.
+pub(super) fn asked_by(selector: &Selector, kind: ObjectKind) -> AttributeSet {
+    let mut asked = AttributeSet::default();
+    kind.attributes().iter().filter(|of| selector.attributes().contains(**of)).for_each(|of| asked.insert(*of));
     asked
 }
 
@@ -140,6 +147,12 @@ impl Classes {
     pub(super) fn value(&self, class: u32, attribute: Attribute) -> Option<&str> {
         let column = self.columns.iter().find(|column| column.attribute == attribute)?;
         Some(&column.texts[column.of_class[class as usize] as usize])
+    }
+
+    /// For each class whether a selector picks its objects, taken as ones of a type.
+    pub(super) fn picks(&self, selector: &Selector, kind: ObjectKind) -> Vec<bool> {
+        let picks = |class| selector.matches(kind, &|attribute| self.value(class, attribute));
+        (0..self.count as u32).map(picks).collect()
     }
 
     /// For each class of atoms whether a bond has an atom of it.

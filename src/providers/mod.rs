@@ -3,11 +3,13 @@
 mod camera;
 mod classes;
 mod lighting;
+mod picked;
 mod shader;
 mod unmatched;
 
 pub use camera::CameraProvider;
 pub use lighting::LightingProvider;
+pub use picked::{Picked, picked};
 pub use shader::{Assignment, ShaderProvider};
 pub use unmatched::unmatched;
 

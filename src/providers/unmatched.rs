@@ -1,16 +1,18 @@
-//! Rules that match nothing of a scene: mostly slips, so that each is told with the names that are there.
+//! Selectors that match nothing of a scene: mostly slips, so that each is told with the names that are there.
 
 use std::collections::{BTreeSet, HashSet};
 
-use super::classes::{Classes, asked};
+use super::classes::{Classes, asked, asked_by};
 use super::shader::{OF_ATOMS, matched_values};
-use crate::config::{Attribute, AttributeValues, Hint, Notice, ObjectKind, Rule, RuleIndex, Style, Warning};
+use crate::config::{
+    Attribute, AttributeValues, Hint, Notice, ObjectKind, Origin, Place, RuleIndex, Selector, Style, Value, Warning,
+};
 use crate::scene::Scene;
 
-/// Most rules that are told the names of the scene. Ours: more than anyone reads, and a bound on the work.
+/// Most selectors that are told the names of the scene. Ours: more than anyone reads, and a bound on the work.
 const MOST_HINTED: usize = 100;
 
-/// Most classes of objects that are looked at for one rule's names.
+/// Most classes of objects that are looked at for one selector's names.
 const MOST_CLASSES: usize = 10_000;
 
 /// Most names that are compared with a wrong one.
@@ -32,15 +34,39 @@ impl Objects {
     fn exist(&self, class: usize, kind: Option<ObjectKind>) -> bool {
         kind != Some(ObjectKind::Connector) || self.bonded[class]
     }
+
+    /// Whether a selector picks any.
+    fn hold(&self, selector: &Selector) -> bool {
+        let holds = |kind: &ObjectKind| {
+            let picks = self.classes.picks(selector, *kind).into_iter().enumerate();
+            picks.filter(|(_, picked)| *picked).any(|(class, _)| self.exist(class, Some(*kind)))
+        };
+        self.kinds.iter().any(holds)
+    }
 }
 
-/// A warning for each rule that matches no object of the scene, by file and in the order of the text. Rules for types that
-/// the scene has nothing of are left out, since a style may be meant for molecules and meshes; so are types that are not
-/// drawn yet, which is told when the style loads.
+/// The selectors that are values of the post effects that a style lists, with their places.
+fn of_effects(style: &Style) -> Vec<(&Selector, &Place)> {
+    let values = style.listed_effects.iter().flat_map(|effect| style.shaders[effect.index].values.iter());
+    let selectors = values.filter_map(|(_, value, origin)| match (value, origin) {
+        (Value::Selector(selector), Origin::File(place)) => Some((selector, place)),
+        _ => None,
+    });
+    selectors.collect()
+}
+
+/// A warning for each selector of a rule or a listed post effect that matches no object of the scene, by file and in the order
+/// of the text. Types that the scene has nothing of are left out, since a style may be meant for molecules and meshes; so are
+/// types that are not drawn yet, which is told when the style loads.
 pub fn unmatched(style: &Style, scene: &Scene) -> Vec<Warning> {
-    let atoms = Classes::of_atoms(scene, asked(style, &OF_ATOMS));
+    let of_effects = of_effects(style);
+    let asked = |kinds: &[ObjectKind]| {
+        let by_effects = of_effects.iter().map(|(selector, _)| asked_by(selector, kinds[0]));
+        by_effects.fold(asked(style, kinds), |asked, also| asked.union(also))
+    };
+    let atoms = Classes::of_atoms(scene, asked(&OF_ATOMS));
     let bonded = atoms.bonded(&scene.molecule.bonds);
-    let parts = Classes::of_parts(scene, asked(style, &[ObjectKind::Mesh]));
+    let parts = Classes::of_parts(scene, asked(&[ObjectKind::Mesh]));
     let all = [
         Objects { kinds: &OF_ATOMS, classes: atoms, bonded },
         Objects { kinds: &[ObjectKind::Mesh], classes: parts, bonded: Vec::new() },
@@ -54,33 +80,34 @@ pub fn unmatched(style: &Style, scene: &Scene) -> Vec<Warning> {
     };
     let used: Vec<Vec<bool>> =
         all.iter().flat_map(|objects| objects.kinds.iter().map(|kind| used(objects, *kind))).collect();
-    let is_there = |rule: &Rule| all.iter().flat_map(|of| of.kinds).any(|kind| rule.selector.is_for(*kind));
-    let mut rules: Vec<&Rule> = style
-        .mapping
-        .iter()
-        .enumerate()
-        .filter(|(i, rule)| is_there(rule) && !used.iter().any(|used| used[*i]))
-        .map(|(_, rule)| rule)
+    let rules = style.mapping.iter().enumerate().filter(|(i, _)| !used.iter().any(|used| used[*i]));
+    let of_effects = of_effects.iter().filter(|(selector, _)| !all.iter().any(|objects| objects.hold(selector)));
+    let is_there = |selector: &Selector| all.iter().flat_map(|of| of.kinds).any(|kind| selector.is_for(*kind));
+    let mut unmatched: Vec<(&Selector, &Place)> = rules
+        .map(|(_, rule)| (&rule.selector, &rule.place))
+        .chain(of_effects.copied())
+        .filter(|(selector, _)| is_there(selector))
         .collect();
-    rules.sort_by(|a, b| (&a.place.file, a.place.start).cmp(&(&b.place.file, b.place.start)));
-    let warning = |(i, rule): (usize, &Rule)| {
-        let hint = if i < MOST_HINTED { names(rule, &all) } else { Hint::NONE };
-        let notice = Notice::MatchesNothing { selector: rule.selector.to_string(), hint };
-        Warning { place: rule.place.clone(), notice }
+    unmatched.sort_by(|(_, a), (_, b)| (&a.file, a.start).cmp(&(&b.file, b.start)));
+    // Of an effect that is listed twice it is told once.
+    unmatched.dedup_by(|(_, a), (_, b)| (&a.file, a.start) == (&b.file, b.start));
+    let warning = |(i, (selector, place)): (usize, (&Selector, &Place))| {
+        let hint = if i < MOST_HINTED { names(selector, &all) } else { Hint::NONE };
+        Warning { place: place.clone(), notice: Notice::MatchesNothing { selector: selector.to_string(), hint } }
     };
-    rules.into_iter().enumerate().map(warning).collect()
+    unmatched.into_iter().enumerate().map(warning).collect()
 }
 
 /// The names that the scene has for the attribute that fails: those of the objects that miss the fewest conditions.
-fn names(rule: &Rule, all: &[Objects]) -> Hint {
+fn names(selector: &Selector, all: &[Objects]) -> Hint {
     let mut best: Option<(usize, Attribute, &str)> = None;
     let mut names: BTreeSet<&str> = BTreeSet::new();
-    let kind = rule.selector.kind();
-    let classes = all.iter().filter(|objects| objects.kinds.iter().any(|kind| rule.selector.is_for(*kind)));
+    let kind = selector.kind();
+    let classes = all.iter().filter(|objects| objects.kinds.iter().any(|kind| selector.is_for(*kind)));
     let classes = classes.flat_map(|objects| (0..objects.classes.count as u32).map(move |class| (objects, class)));
     for (objects, class) in classes.filter(|(of, class)| of.exist(*class as usize, kind)).take(MOST_CLASSES) {
         let value = |attribute| objects.classes.value(class, attribute);
-        let mut unmet = rule.selector.unmet(&value);
+        let mut unmet = selector.unmet(&value);
         let Some((attribute, pattern)) = unmet.next() else { continue };
         // What the objects do not have at all cannot be mended by another value.
         let has_none = usize::from(value(attribute).is_none());

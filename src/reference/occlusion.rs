@@ -12,6 +12,15 @@ pub struct Occlusion {
     pub radius: f64,
     /// Light is multiplied by 1 - intensity times occlusion, at least 0.
     pub intensity: f64,
+    /// The bit of what is darkened, where that is not all.
+    pub pick_bits: Option<u32>,
+}
+
+impl Occlusion {
+    /// Whether it darkens a surface.
+    pub fn picks(&self, surface: &Surface) -> bool {
+        self.pick_bits.is_none_or(|bits| surface.picks & bits != 0)
+    }
 }
 
 /// The share of `num_rays` directions above a surface's plane that are blocked, 0..1.

@@ -34,9 +34,9 @@ const WHOLE_SAMPLES: u32 = 64;
 /// What `sampling::seed` is asked for.
 const FOR_PLACE: u32 = 0;
 const FOR_LENS: u32 = 1;
-const FOR_OCCLUSION: u32 = 2;
 const FOR_ENVIRONMENT: u32 = 3;
 const FOR_LIGHTS: u32 = 8;
+const FOR_OCCLUSIONS: u32 = 256;
 
 /// What a picture shows, and how.
 pub struct Picture<'a> {
@@ -48,8 +48,8 @@ pub struct Picture<'a> {
     pub optics: Optics,
     /// What shines, in view space.
     pub lighting: &'a Lighting,
-    /// Darkening where things are near.
-    pub occlusion: Option<Occlusion>,
+    /// Darkening where things are near, one upon the other.
+    pub occlusions: &'a [Occlusion],
     /// What is out of focus.
     pub lens: Option<Lens>,
     /// Layers of focus, in whose colours all is drawn instead.
@@ -374,15 +374,13 @@ impl Picture<'_> {
                 basic.0.tone_mapped(radiance)
             }
         };
-        match &self.occlusion {
-            Some(occlusion) => {
-                let num_rays = OCCLUSION_RAYS.div_ceil(seen.shared_by);
-                let seed = seed(seen.pixel, seen.index, FOR_OCCLUSION);
-                let occluded = occluded(self.world, surface, seen.hit.object, occlusion.radius, num_rays, seed);
-                color * (1.0 - occlusion.intensity * occluded).max(0.0)
-            }
-            None => color,
-        }
+        let occlusions = (0..).zip(self.occlusions).filter(|(_, occlusion)| occlusion.picks(surface));
+        occlusions.fold(color, |color, (number, occlusion)| {
+            let num_rays = OCCLUSION_RAYS.div_ceil(seen.shared_by);
+            let seed = seed(seen.pixel, seen.index, FOR_OCCLUSIONS + number);
+            let occluded = occluded(self.world, surface, seen.hit.object, occlusion.radius, num_rays, seed);
+            color * (1.0 - occlusion.intensity * occluded).max(0.0)
+        })
     }
 }
 

@@ -25,6 +25,8 @@ pub struct Look {
     pub material: u32,
     /// Which group of objects: chain and residue, 16 bits.
     pub group: u32,
+    /// Which selectors of post effects pick it, one bit each.
+    pub picks: u32,
 }
 
 /// A sphere in view space.
@@ -131,6 +133,8 @@ pub struct Surface {
     pub material: u32,
     /// Group of 16 bits; 0 for meshes.
     pub group: u32,
+    /// Which selectors of post effects pick it, one bit each.
+    pub picks: u32,
     /// Its atom, connector or part, never 0.
     pub id: u64,
     /// 1 over the radius, 0 where flat.
@@ -385,6 +389,7 @@ impl World {
             color: look.color,
             material,
             group: look.group,
+            picks: look.picks,
             id: kind << 32 | u64::from(index),
             bend,
         };
@@ -420,6 +425,7 @@ impl World {
             color: DVec3::ONE,
             material: 0,
             group: 0,
+            picks: 0,
             id: 3 << 32 | u64::from(triangle.part),
             bend: 0.0,
         };
@@ -443,6 +449,7 @@ impl World {
             normal
         };
         surface.material = part.look.material;
+        surface.picks = part.look.picks;
         surface.color = part.look.color;
         if part.has_vertex_colors {
             let colors = vertices

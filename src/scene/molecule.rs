@@ -143,17 +143,20 @@ impl Molecule {
         self.sphere
     }
 
-    /// Centres and van der Waals radii of all atoms where they are drawn, in scene coordinates.
-    pub fn drawn_balls(&self) -> impl Iterator<Item = (Vec3, f32)> + Clone {
-        let plain = if self.copies.is_empty() { &self.atoms[..] } else { &[] };
-        let ball = |atom: &Atom| (atom.position, atom.element.vdw_radius());
+    /// Index and centre of all atoms where they are drawn, in scene coordinates.
+    pub fn drawn_places(&self) -> impl Iterator<Item = (u32, Vec3)> + Clone {
+        let position = |atom: u32| self.atoms[atom as usize].position;
+        let plain = if self.copies.is_empty() { 0..self.atoms.len() as u32 } else { 0..0 };
         let of_copy = move |copy: &MoleculeCopy| {
             let place = copy.world_from_molecule;
-            let atoms = |range: Range<u32>| &self.atoms[range.start as usize..range.end as usize];
-            let balls = copy.atoms.clone().into_iter().flat_map(atoms).map(ball);
-            balls.map(move |(center, radius)| (place.transform_point3(center), radius))
+            copy.atoms.clone().into_iter().flatten().map(move |atom| (atom, place.transform_point3(position(atom))))
         };
-        plain.iter().map(ball).chain(self.copies.iter().flat_map(of_copy))
+        plain.map(move |atom| (atom, position(atom))).chain(self.copies.iter().flat_map(of_copy))
+    }
+
+    /// Centres and van der Waals radii of all atoms where they are drawn, in scene coordinates.
+    pub fn drawn_balls(&self) -> impl Iterator<Item = (Vec3, f32)> + Clone {
+        self.drawn_places().map(|(atom, center)| (center, self.atoms[atom as usize].element.vdw_radius()))
     }
 
     /// The residue of an atom.

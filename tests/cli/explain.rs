@@ -59,10 +59,11 @@ fn what_is_left_out_says_why() {
     let Some(folder) = Folder::with_adapter("explain-why") else { return };
     folder.write(
         "s.json",
-        r#"{ "mapping": { "*": "basic", "post_effects": ["faint", "tiny", "none", "blur"] },
+        r#"{ "mapping": { "*": "basic", "post_effects": ["faint", "tiny", "meshes", "none", "blur"] },
             "lights": [{ "type": "point", "position": [0.5, 0, 0], "shadow": "hard" }],
             "shaders": [{ "name": "faint", "shader": "ssaoPost", "properties": { "intensity": 0 } },
                 { "name": "tiny", "shader": "ssaoPost", "properties": { "radius": "0.0001r" } },
+                { "name": "meshes", "shader": "ssaoPost", "properties": { "applies_to": "mesh" } },
                 { "name": "none", "shader": "outlinePost", "properties": { "silhouette_width": 0, "boundary_width": 0 } },
                 { "name": "blur", "shader": "dofPost" }] }"#,
     );
@@ -75,6 +76,7 @@ fn what_is_left_out_says_why() {
         "resolve              one sample of 8 bits a channel is written straight away",
         "ssaoPost             its intensity is 0",
         "ssaoPost             its radius is less than 1.5 pixels anywhere",
+        "ssaoPost             it applies to nothing in this scene",
         "outlinePost          its lines have no width",
         "dofPost              the reference renderer alone draws it so far",
     ] {

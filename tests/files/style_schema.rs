@@ -292,6 +292,19 @@ const VALUES: &[&str] = &[
     "[\"toon\"]",
     "7",
     "\"base.json\"",
+    "\"*\"",
+    "\" atom[element=O] \"",
+    "\"atom[element=O\"",
+    "\"atom[number=1..2][b_factor=5..]\"",
+    "\"mesh[part=2pt]\"",
+    "\"mesh[element=O]\"",
+    "\"ribbon[chain='']\"",
+    "\"atm\"",
+    "\"post_effects\"",
+    "\"layers\"",
+    "\" center\"",
+    "\"+2pt\"",
+    "\" .5A\"",
 ];
 
 /// Keys that reach further than those of the styles.

@@ -108,6 +108,51 @@ fn an_effect_costs_its_passes_and_then_one_write() {
 }
 
 #[test]
+fn what_an_effect_applies_to_costs_the_objects() {
+    let Some(mut engine) = warm() else { return };
+    let occluded = |properties: &str| {
+        let shaders =
+            format!(r#"{SHADERS}, {{ "name": "o", "shader": "ssaoPost", "properties": {{ {properties} }} }}"#);
+        style(CAMERA, &format!(r#"{MAPPING}, "post_effects": ["o"]"#), &shaders, LIGHTS)
+    };
+    let first = cost_of(&mut engine, &occluded(r#""applies_to": "atom[element=O]""#));
+    assert_eq!(first.pipelines_built, 3, "shading with surfaces, and two passes: {first:?}");
+    assert_eq!(cost(&mut engine), Counters::default(), "a frame in which nothing changed");
+    let row = one_write(4 * 32);
+    assert_eq!(cost_of(&mut engine, &occluded(r#""applies_to": "atom[element=N]""#)), row, "the row of the four atoms");
+    // All: the passes ask no object.
+    let all = cost_of(&mut engine, &occluded(""));
+    assert_eq!((all.pipelines_built, all.textures_created, all.writes), (2, 0, 2), "{all:?}");
+    assert_eq!(all.bytes_written, row.bytes_written + 4);
+    // Nothing: the passes are left out.
+    let nothing = cost_of(&mut engine, &occluded(r#""applies_to": "connector""#));
+    assert_eq!(Counters { bind_groups_created: 0, ..nothing }, Counters::default(), "{nothing:?}");
+}
+
+#[test]
+fn more_selectors_than_objects_have_bits_for_are_told() {
+    let Some(mut engine) = warm() else { return };
+    let told = |engine: &mut Engine, count: usize| {
+        let names: Vec<String> = (0..count).map(|i| format!("\"o{i}\"")).collect();
+        let entry = |i: usize| {
+            format!(
+                r#", {{ "name": "o{i}", "shader": "ssaoPost", "properties": {{ "applies_to": "atom[number=..{i}]" }} }}"#
+            )
+        };
+        let shaders = SHADERS.to_owned() + &(0..count).map(entry).collect::<String>();
+        let mapping = format!(r#"{MAPPING}, "post_effects": [{}]"#, names.join(", "));
+        engine.set_style(parse(&style(CAMERA, &mapping, &shaders, LIGHTS)));
+        cost(engine);
+        engine.limits_exceeded([64, 48])
+    };
+    assert_eq!(told(&mut engine, 15), Vec::<String>::new());
+    assert_eq!(
+        told(&mut engine, 17),
+        ["the post effects of the style have 17 different selectors; only those of the first 15 are drawn"]
+    );
+}
+
+#[test]
 fn a_scheme_of_colours_costs_the_objects() {
     let Some(mut engine) = warm() else { return };
     let shaders = SHADERS.replace("\"steps\": 3", "\"steps\": 3, \"base_color\": \"chain\"");

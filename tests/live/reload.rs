@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use restyle::engine::{Counters, Part, Refusal, Reload};
 
+use super::gpu;
 use super::rig::{Live, ground};
 
 const MOLECULE: &str = "2\n\nC 0 0 0\nO 1.2 0 0\n";
@@ -87,6 +88,32 @@ fn a_bad_save_leaves_the_picture_and_is_told_once() {
     assert!(matches!(live.next(), Reload::Mended(Part::Style)));
     live.write("s.json", &ground(BLUE));
     assert_eq!(live.taken(), Part::Style);
+}
+
+#[test]
+fn what_an_effect_applies_to_is_taken() {
+    let style = |applies_to: &str| {
+        format!(
+            r#"{{ "mapping": {{ "*": "unlit", "post_effects": ["o"] }}, "geometry": {{ "scale": 0.5 }},
+                "shaders": [{{ "name": "o", "shader": "ssaoPost", "properties": {{ "applies_to": {applies_to} }} }}] }}"#
+        )
+    };
+    let (carbon, oxygen) = (style("\"atom[element=C]\""), style("\"atom[element=O]\""));
+    let Some(mut live) = Live::new("applies-to", &[("s.json", &carbon), ("m.xyz", MOLECULE)]) else { return };
+    assert_eq!(live.taken(), Part::Style);
+    let drawn = |live: &mut Live| live.engine.still(&gpu::request([48, 48], 1)).unwrap();
+    let first = drawn(&mut live);
+    let mut seen = vec![first.clone()];
+    for text in [&oxygen, &style("null"), &style("\"atom[element=N]\"")] {
+        live.write("s.json", text);
+        assert_eq!(live.taken(), Part::Style);
+        let now = drawn(&mut live);
+        assert!(seen.iter().all(|other| *other != now), "{text}");
+        seen.push(now);
+    }
+    live.write("s.json", &carbon);
+    assert_eq!(live.taken(), Part::Style);
+    assert!(drawn(&mut live) == first);
 }
 
 #[test]

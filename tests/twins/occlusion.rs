@@ -248,12 +248,19 @@ fn hidden_points(seen: &Seen<'_>, params: &Params, own: [i32; 2], g: &Geometry) 
     hidden / f64::max(counted, 1.0)
 }
 
-/// The occlusion of each pixel of a picture of one sample.
-fn occlusion(view: &View, params: &Params, size: [u32; 2], geometry: &[Geometry]) -> Vec<f64> {
+/// The occlusion of each pixel of a picture of one sample: 0 of what is not picked.
+fn occlusion(
+    view: &View,
+    params: &Params,
+    size: [u32; 2],
+    geometry: &[Geometry],
+    is_picked: &dyn Fn(u32) -> bool,
+) -> Vec<f64> {
     let seen = Seen { view, size: size.map(|side| side as i32), geometry };
     let own = |(x, y): (u32, u32)| [x as i32, y as i32];
+    let picked = |at| seen.surface(at).filter(|g| is_picked(g.id));
     let estimate = |pixel| {
-        seen.surface(own(pixel)).map_or(0.0, |g| match params.form.is_horizons() {
+        picked(own(pixel)).map_or(0.0, |g| match params.form.is_horizons() {
             true => horizons(&seen, params, own(pixel), g),
             false => hidden_points(&seen, params, own(pixel), g),
         })
@@ -261,12 +268,12 @@ fn occlusion(view: &View, params: &Params, size: [u32; 2], geometry: &[Geometry]
     let estimates: Vec<f64> = gpu::pixels(size).map(estimate).collect();
     let denoised = |pixel| {
         let own = own(pixel);
-        let Some(g) = seen.surface(own) else { return 0.0 };
+        let Some(g) = picked(own) else { return 0.0 };
         let p = seen.position(own, g.depth);
         let (mut sum, mut weights) = (0.0, 0.0);
         for index in 0..params.blur * params.blur {
             let at = [own[0] + index % params.blur - params.blur / 2, own[1] + index / params.blur - params.blur / 2];
-            let Some(other) = seen.surface(at) else { continue };
+            let Some(other) = picked(at) else { continue };
             let mut weight = 1.0;
             if params.form.is_horizons() {
                 let off = (seen.position(at, other.depth) - p).dot(g.normal);
@@ -285,16 +292,19 @@ fn occlusion(view: &View, params: &Params, size: [u32; 2], geometry: &[Geometry]
 const SIZE: [u32; 2] = [96, 72];
 const RADIUS: f64 = 2.5;
 
-/// A style of white objects with occlusion alone.
-fn style(method: &str, samples: u32, camera: &str, atom: f64, bond: f64) -> String {
-    format!(
+/// A style of white objects with occlusion alone, of what a selector picks.
+fn style(method: &str, samples: u32, camera: &str, [atom, bond]: [f64; 2], applies_to: &str) -> config::Style {
+    let text = format!(
         r##"{{ "camera": {{ "bgcolor": "black", {camera} }},
             "geometry": {{ "atom": "{atom}A", "scale": 1, "bond_radius": "{bond}A" }},
             "mapping": {{ "*": "flat", "post_effects": ["ao"] }},
             "shaders": [ {{ "name": "flat", "shader": "unlit", "properties": {{ "base_color": "white" }} }},
                 {{ "name": "ao", "shader": "ssaoPost",
-                   "properties": {{ "method": "{method}", "samples": {samples}, "radius": "{RADIUS}A" }} }} ] }}"##
-    )
+                   "properties": {{ "method": "{method}", "samples": {samples}, "radius": "{RADIUS}A",
+                       "applies_to": {applies_to} }} }} ] }}"##
+    );
+    let catalog = Catalog { shaders: &engine::catalog(), kinds: engine::DRAWN_KINDS };
+    config::load(&Source::new("test.json", text), &catalog).unwrap_or_else(|wrong| panic!("{wrong}"))
 }
 
 /// What the device draws: 1 minus its light.
@@ -317,27 +327,60 @@ fn the_gpu_finds_the_occlusion_of_the_twin() {
     for camera in [r#""orthographic": true"#, r#""fov": 45"#] {
         for (form, method, of_measure) in forms {
             let Some(mut rig) = Rig::new(&atoms, SIZE, 1.0, camera, "") else { return };
-            let catalog = Catalog { shaders: &engine::catalog(), kinds: engine::DRAWN_KINDS };
-            let text = style(method, 16, camera, 1.0, super::outline::BOND_RADIUS);
-            let style = config::load(&Source::new("test.json", text), &catalog).unwrap_or_else(|e| panic!("{e}"));
-            rig.engine.set_style(style);
+            rig.engine.set_style(style(method, 16, camera, [1.0, super::outline::BOND_RADIUS], "null"));
             rig.engine.set_forms(of_measure.into_iter().collect());
-            let device = drawn(&mut rig.engine);
-            let params = Params { radius: RADIUS, samples: 16, slices: 2, steps: 4, blur: 4, form };
-            let geometry: Vec<Geometry> = gpu::pixels(SIZE).map(|pixel| rig.geometry(center_px(pixel))).collect();
-            let twin = occlusion(&rig.world.view, &params, SIZE, &geometry);
-            let surfaces: Vec<(f64, f64)> = (device.iter().zip(&twin).zip(&geometry))
-                .filter(|(_, g)| **g != NOTHING)
-                .map(|((device, twin), _)| (*device, *twin))
-                .collect();
-            let count = surfaces.len() as f64;
-            let mean = surfaces.iter().map(|(_, twin)| twin).sum::<f64>() / count;
-            let off = |least: f64| surfaces.iter().filter(|(a, b)| (a - b).abs() > least).count() as f64 / count;
-            let error = surfaces.iter().map(|(a, b)| (a - b).abs()).sum::<f64>() / count;
-            eprintln!("{form:?}, {camera}: mean {mean:.4}, error {error:.6}, off by 0.01: {:.4}", off(0.01));
-            assert!(mean > 0.02 && count > 1000.0, "there is something to see: {mean} of {count}");
-            // Where a tap lies on the border of two pixels, or a bit on the end of what is covered, rounding decides.
-            assert!(error < 1e-3 && off(0.01) < 0.02, "{form:?}, {camera}");
+            assert_is_of_twin(&mut rig, form, &|_| true, 1000.0, camera);
+        }
+    }
+}
+
+/// Holds what the device draws of a rig against the twin: what is picked, of so many pixels at the least, and what is not.
+fn assert_is_of_twin(rig: &mut Rig, form: Form, is_picked: &dyn Fn(u32) -> bool, least_px: f64, name: &str) {
+    let device = drawn(&mut rig.engine);
+    let params = Params { radius: RADIUS, samples: 16, slices: 2, steps: 4, blur: 4, form };
+    let geometry: Vec<Geometry> = gpu::pixels(SIZE).map(|pixel| rig.geometry(center_px(pixel))).collect();
+    let twin = occlusion(&rig.world.view, &params, SIZE, &geometry, is_picked);
+    let surfaces: Vec<(f64, f64)> = (device.iter().zip(&twin).zip(&geometry))
+        .filter(|(_, g)| **g != NOTHING && is_picked(g.id))
+        .map(|((device, twin), _)| (*device, *twin))
+        .collect();
+    let count = surfaces.len() as f64;
+    let mean = surfaces.iter().map(|(_, twin)| twin).sum::<f64>() / count;
+    let off = |least: f64| surfaces.iter().filter(|(a, b)| (a - b).abs() > least).count() as f64 / count;
+    let error = surfaces.iter().map(|(a, b)| (a - b).abs()).sum::<f64>() / count;
+    eprintln!("{form:?}, {name}: mean {mean:.4}, error {error:.6}, off by 0.01: {:.4}, {count} px", off(0.01));
+    assert!(mean > 0.02 && count > least_px, "there is something to see: {mean} of {count}");
+    // Where a tap lies on the border of two pixels, or a bit on the end of what is covered, rounding decides.
+    assert!(error < 1e-3 && off(0.01) < 0.02, "{form:?}, {name}");
+    let left = (device.iter().zip(&geometry)).filter(|(_, g)| **g != NOTHING && !is_picked(g.id));
+    assert_eq!(left.filter(|(dark, _)| **dark != 0.0).count(), 0, "{name}: what is not picked is as bright as ever");
+}
+
+#[test]
+fn what_is_not_picked_is_not_darkened_and_darkens() {
+    let atoms = random_atoms(60, DVec3::new(5.0, 4.0, 4.0), 11);
+    let camera = r#""fov": 45"#;
+    // Small enough that connectors are seen between them.
+    let radii = [0.45, super::outline::BOND_RADIUS];
+    for (form, method) in [(Form::Bitmask, "bitmask"), (Form::Hemisphere, "hemisphere")] {
+        let Some(mut rig) = Rig::new(&atoms, SIZE, radii[0], camera, "") else { return };
+        let of_chain: Vec<u32> = {
+            let chains = &rig.engine.scene().expect("a scene").molecule.chains;
+            let chain = chains.iter().position(|chain| chain.id == "B").expect("a chain") as u32;
+            let ids = rig.world.shapes.iter().map(|(id, _)| *id);
+            ids.filter(|id| rig.groups(*id).iter().any(|group| group >> 9 == chain)).collect()
+        };
+        let is_of_chain = |id: u32| of_chain.contains(&id);
+        let is_atom = |id: u32| id >> 29 == 1;
+        let picks: [(&str, &dyn Fn(u32) -> bool); 4] = [
+            ("atom", &is_atom),
+            ("connector", &|id| !is_atom(id)),
+            ("*[chain=B]", &is_of_chain),
+            ("atom[chain=B]", &|id| is_atom(id) && is_of_chain(id)),
+        ];
+        for (selector, is_picked) in picks {
+            rig.engine.set_style(style(method, 16, camera, radii, &format!("\"{selector}\"")));
+            assert_is_of_twin(&mut rig, form, is_picked, 100.0, selector);
         }
     }
 }
@@ -368,9 +411,7 @@ fn a_lone_sphere_is_not_darkened() {
     let lone = [('A', DVec3::ZERO)];
     for form in ["bitmask", "gtao"] {
         let Some(mut rig) = Rig::new(&lone, SIZE, 1.0, r#""fov": 45"#, "") else { return };
-        let catalog = Catalog { shaders: &engine::catalog(), kinds: engine::DRAWN_KINDS };
-        let text = style(form, 16, r#""fov": 45"#, 1.0, 0.1);
-        rig.engine.set_style(config::load(&Source::new("test.json", text), &catalog).unwrap_or_else(|e| panic!("{e}")));
+        rig.engine.set_style(style(form, 16, r#""fov": 45"#, [1.0, 0.1], "null"));
         let seen: Vec<bool> = gpu::pixels(SIZE).map(|pixel| rig.geometry(center_px(pixel)) != NOTHING).collect();
         let dark = drawn(&mut rig.engine).into_iter().zip(seen).filter(|(dark, seen)| *seen && *dark > 1e-4).count();
         assert_eq!(dark, 0, "{form}: nothing is near a lone sphere");

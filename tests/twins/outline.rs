@@ -314,6 +314,12 @@ impl Rig {
         Some(Rig { engine, world, groups })
     }
 
+    /// The groups of the two halves of an object.
+    pub fn groups(&self, id: u32) -> [u32; 2] {
+        let place = self.world.shapes.iter().position(|(of, _)| *of == id).expect("it is there");
+        self.groups[place]
+    }
+
     /// What a picture position sees.
     pub fn geometry(&self, at: DVec2) -> Geometry {
         let Some((id, shape, hit)) = self.world.seen(at) else { return NOTHING };

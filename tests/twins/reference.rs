@@ -17,7 +17,7 @@ use restyle::shipped;
 use super::gpu;
 use super::meshes::{quad, stl};
 
-const WHITE: Look = Look { color: DVec3::ONE, material: 0, group: 0 };
+const WHITE: Look = Look { color: DVec3::ONE, material: 0, group: 0, picks: 0 };
 
 fn ball(center: DVec3, radius: f64) -> Sphere {
     Sphere { center, radius, look: WHITE }
@@ -38,7 +38,7 @@ fn optics(size: [u32; 2]) -> Optics {
 fn drawn(
     world: &World,
     materials: &[Material],
-    occlusion: Option<Occlusion>,
+    occlusions: &[Occlusion],
     size: [u32; 2],
     samples: u32,
 ) -> Vec<[f32; 4]> {
@@ -48,7 +48,7 @@ fn drawn(
         materials,
         optics: optics(size),
         lighting: &lighting,
-        occlusion,
+        occlusions,
         lens: None,
         layers: None,
         lines: &[],
@@ -86,7 +86,7 @@ fn mesh(facets: &[[DVec3; 3]]) -> World {
 fn objects_cover_their_exact_share_of_the_picture() {
     let size = [120, 120];
     let area = |world: &World| -> f64 {
-        let light = drawn(world, &[matt(1.0)], None, size, 64);
+        let light = drawn(world, &[matt(1.0)], &[], size, 64);
         light.iter().map(|pixel| f64::from(pixel[3])).sum::<f64>() * (2.0 / 120.0f64).powi(2)
     };
     let middle = DVec3::new(0.013, -0.027, -5.0);
@@ -113,13 +113,13 @@ fn nested_spheres_blend_by_the_product() {
         Sphere { center: DVec3::new(0.0, 0.0, -5.0), radius: 0.9 - 0.1 * index as f64, look }
     });
     let materials: Vec<Material> = alphas.iter().map(|alpha| matt(*alpha)).collect();
-    let light = drawn(&world(balls.collect(), vec![], None), &materials, None, [21, 21], 1);
+    let light = drawn(&world(balls.collect(), vec![], None), &materials, &[], [21, 21], 1);
     let seen = f64::from(light[10 * 21 + 10][3]);
     let expected = 1.0 - alphas.iter().map(|alpha| 1.0 - alpha).product::<f64>();
     assert!((seen - expected).abs() < 1e-6, "{seen} {expected}");
     // As many that lie in one place are as many layers.
     let same = vec![ball(DVec3::new(0.0, 0.0, -5.0), 0.5); 5];
-    let light = drawn(&world(same, vec![], None), &[matt(0.4)], None, [21, 21], 1);
+    let light = drawn(&world(same, vec![], None), &[matt(0.4)], &[], [21, 21], 1);
     let expected = 1.0 - 0.6f64.powi(5);
     assert!((f64::from(light[10 * 21 + 10][3]) - expected).abs() < 1e-6);
 }
@@ -247,6 +247,41 @@ fn the_gpu_occludes_as_rays_do() {
         let found = metrics::compare(&truth, &image, &Options::default()).expect("one size").metrics;
         eprintln!("{scene}: FLIP {:.4}, PSNR {:.1} dB", found.flip, found.psnr_db);
         assert!(found.flip < flip_limit, "{scene}: {}", found.flip);
+    }
+}
+
+#[test]
+fn the_gpu_occludes_what_is_picked_as_rays_do() {
+    let Some(gpu) = gpu::device() else { return };
+    let (size, samples) = ([120, 120], 16);
+    // Both effects count: each darkens what it picks.
+    let style = |first: &str, second: &str| {
+        style(&format!(
+            r##"{{ "camera": {{ "bgcolor": "white" }}, "mapping": {{ "*": "paper", "post_effects": ["a", "b"] }},
+                "shaders": [ {{ "name": "paper", "shader": "unlit", "properties": {{ "base_color": "#e8d8c0" }} }},
+                    {{ "name": "a", "shader": "ssaoPost", "properties": {{ "applies_to": "{first}" }} }},
+                    {{ "name": "b", "shader": "ssaoPost", "properties": {{ "applies_to": "{second}", "radius": "6r" }} }} ] }}"##
+        ))
+    };
+    for (scene, first, second, flip_limit) in [
+        ("caffeine", "connector", "atom[element=O]", 0.02),
+        ("alpha_helix", "*[number=1..6]", "*[number=4..9]", 0.025),
+        // Half of what is near a part of a gearbox lies behind others.
+        ("gearbox", "mesh[part=*1]", "mesh[part=*o*]", 0.055),
+    ] {
+        let style = style(first, second);
+        let truth = exact_still(scene, &style, &Request::new(size, samples), 2);
+        let mut engine = Engine::new(Arc::clone(&gpu), shipped_scene(scene), style.clone());
+        let image = engine.still(&Request::new(size, samples)).expect("a still");
+        let found = metrics::compare(&truth, &image, &Options::default()).expect("one size").metrics;
+        let mut plain = style;
+        plain.post_effects.clear();
+        plain.listed_effects.clear();
+        engine.set_style(plain);
+        let bare = engine.still(&Request::new(size, samples)).expect("a still");
+        let darkened = metrics::compare(&truth, &bare, &Options::default()).expect("one size").metrics;
+        eprintln!("{scene}: FLIP {:.4} of {:.4}, PSNR {:.1} dB", found.flip, darkened.flip, found.psnr_db);
+        assert!(found.flip < flip_limit && found.flip < 0.5 * darkened.flip, "{scene}: {}", found.flip);
     }
 }
 

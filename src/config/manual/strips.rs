@@ -43,9 +43,14 @@ impl Strip {
     }
 }
 
-/// Parameters that change nothing in a still, or no more than its noise.
-const UNSEEN: [(&str, &str); 4] =
-    [("geometry", "file_unit"), ("lights", "movable"), ("ssaoPost", "samples"), ("ssaoPost", "blur")];
+/// Parameters without pictures: they change nothing in a still, or no more than its noise, or only what others show is changed.
+const UNSEEN: [(&str, &str); 5] = [
+    ("geometry", "file_unit"),
+    ("lights", "movable"),
+    ("ssaoPost", "samples"),
+    ("ssaoPost", "blur"),
+    ("ssaoPost", "applies_to"),
+];
 
 /// What a parameter is shown on.
 struct Setting {

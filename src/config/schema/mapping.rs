@@ -26,7 +26,7 @@ const OFFERED: [(&str, &str); 16] = [
     ("mesh[material=Steel]", "Parts of a mesh that are of one material."),
 ];
 
-/// What the editor says of a key that is no selector.
+/// What the editor says of a text that is no selector.
 fn no_selector(catalog: &Catalog<'_>) -> String {
     let kinds: Vec<&str> = catalog.kinds.iter().map(|kind| kind.name()).collect();
     let attributes: Vec<&str> = catalog.attributes().map(Attribute::name).collect();
@@ -45,27 +45,15 @@ const TARGET: &str = "The name of an entry of shaders, or of a shader with its d
 pub(super) fn mapping(catalog: &Catalog<'_>) -> Value {
     let target = || json!([{ "$ref": "#/definitions/target" }]);
     let rule = |doc: &str| json!({ "description": doc, "type": ["string", "null"], "allOf": target() });
-    let mut properties = Map::new();
-    for kind in catalog.kinds {
-        properties.insert(kind.name().to_owned(), rule(kind.doc()));
-    }
-    for (selector, doc) in OFFERED {
-        let kind = Selector::parse(selector).ok().and_then(|selector| selector.kind());
-        if kind.is_none_or(|kind| catalog.kinds.contains(&kind)) {
-            properties.insert(selector.to_owned(), rule(doc));
-        }
-    }
+    let mut properties: Map<String, Value> =
+        offered(catalog).map(|(selector, doc)| (selector.to_owned(), rule(doc))).collect();
     properties.insert("post_effects".to_owned(), post_effects(catalog));
-    let (drawn, not_drawn): (Vec<_>, Vec<_>) =
-        ObjectKind::ALL.into_iter().partition(|kind| catalog.kinds.contains(kind));
-    let some = |kinds: Vec<ObjectKind>| kinds.into_iter().map(Some).collect::<Vec<_>>();
+    let [drawn, not_drawn] = kinds(catalog);
     let mut patterns = Map::new();
-    let any = [some(drawn), vec![None]].concat();
-    patterns.insert(patterns::selector(&any), rule(TARGET));
+    patterns.insert(patterns::selector(&drawn), rule(TARGET));
     if !not_drawn.is_empty() {
-        let message = format!("objects of this type are {NOT_DRAWN}");
-        let rule = json!({ "description": TARGET, "deprecationMessage": message, "allOf": target() });
-        patterns.insert(patterns::selector(&some(not_drawn)), rule);
+        let rule = json!({ "description": TARGET, "deprecationMessage": type_not_drawn(), "allOf": target() });
+        patterns.insert(patterns::selector(&not_drawn), rule);
     }
     json!({
         "type": "object",
@@ -79,6 +67,45 @@ pub(super) fn mapping(catalog: &Catalog<'_>) -> Value {
             "errorMessage": no_selector(catalog),
         }],
     })
+}
+
+/// Each selector that the editor offers, and what it picks.
+fn offered(catalog: &Catalog<'_>) -> impl Iterator<Item = (&'static str, &'static str)> {
+    let is_drawn = |selector: &str| {
+        let kind = Selector::parse(selector).ok().and_then(|selector| selector.kind());
+        kind.is_none_or(|kind| catalog.kinds.contains(&kind))
+    };
+    let kinds = catalog.kinds.iter().map(|kind| (kind.name(), kind.doc()));
+    kinds.chain(OFFERED.into_iter().filter(move |(selector, _)| is_drawn(selector)))
+}
+
+/// Types that are drawn, with `None` for `*`, and types that are not.
+fn kinds(catalog: &Catalog<'_>) -> [Vec<Option<ObjectKind>>; 2] {
+    let (mut drawn, not_drawn): (Vec<_>, Vec<_>) =
+        ObjectKind::ALL.into_iter().map(Some).partition(|kind| kind.is_some_and(|kind| catalog.kinds.contains(&kind)));
+    drawn.push(None);
+    [drawn, not_drawn]
+}
+
+fn type_not_drawn() -> String {
+    format!("objects of this type are {NOT_DRAWN}")
+}
+
+/// A selector as the value of a parameter.
+pub(super) fn selector(catalog: &Catalog<'_>) -> Value {
+    let [drawn, not_drawn] = kinds(catalog);
+    let offered = offered(catalog)
+        .map(|(selector, doc)| json!({ "label": format!("{selector:?}"), "description": doc, "body": selector }));
+    let mut schema = json!({
+        "pattern": patterns::selector(&[&drawn[..], &not_drawn].concat()),
+        "patternErrorMessage": no_selector(catalog),
+        "defaultSnippets": offered.collect::<Vec<_>>(),
+    });
+    if !not_drawn.is_empty() {
+        schema["if"] = json!({ "type": "string", "pattern": patterns::selector(&not_drawn) });
+        schema["then"] = json!({ "deprecationMessage": type_not_drawn() });
+    }
+    schema
 }
 
 /// What draws: a name of `shaders`, of a base, or of a registered shader.

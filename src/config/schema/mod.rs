@@ -63,6 +63,7 @@ pub fn schema(catalog: &Catalog<'_>) -> Value {
     }
     let mut definitions = param::definitions();
     definitions.insert("target".to_owned(), mapping::target(catalog));
+    definitions.insert("selector".to_owned(), mapping::selector(catalog));
     for entry in catalog.shaders {
         definitions.insert(format!("{}_properties", entry.name), properties_of(catalog, entry));
     }

@@ -74,7 +74,7 @@ pub(super) fn param(param: &Param) -> Value {
     };
     let shared = |name: &str| json!([{ "$ref": format!("#/definitions/{name}") }]);
     match param.kind {
-        Kind::Number | Kind::Count | Kind::Length | Kind::ChoiceOrLength(_) => {
+        Kind::Number | Kind::Count | Kind::Length | Kind::ChoiceOrLength(_) | Kind::Place(_) => {
             for (key, bound) in bounds.clone() {
                 put(key, bound);
             }
@@ -102,9 +102,19 @@ pub(super) fn param(param: &Param) -> Value {
             put("type", types(&["string", "number"]));
             put("pattern", patterns::choice_or_length(of, lowest < 0.0).into());
             put("patternErrorMessage", format!("Neither {} nor a length. {NO_LENGTH}", of.join(", ")).into());
-            let words = of.iter().map(|word| json!({ "label": format!("{word:?}"), "body": word }));
-            let lengths = snippets::lengths();
-            put("defaultSnippets", words.chain(lengths.as_array().cloned().unwrap_or_default()).collect());
+            put("defaultSnippets", snippets::words_and_lengths(of));
+        }
+        Kind::Place(of) => {
+            put("type", types(&["string", "number"]));
+            put("pattern", patterns::place(of, lowest < 0.0).into());
+            let no_place =
+                format!("Neither {} nor a length nor a selector such as \"atom[element=O]\".", of.join(", "));
+            put("patternErrorMessage", no_place.into());
+            put("defaultSnippets", snippets::words_and_lengths(of));
+        }
+        Kind::Selector => {
+            put("type", types(&["string"]));
+            put("allOf", shared("selector"));
         }
         Kind::Color if param.default == Default::Unset => {
             put("anyOf", json!([{ "$ref": "#/definitions/color" }, { "type": "null" }]));

@@ -43,6 +43,12 @@ pub(super) fn choice_or_length(words: &[&str], signed: bool) -> String {
     format!("^(?:{}|{number}{})$", words.join("|"), unit())
 }
 
+/// One of some words, a length, or a selector of any type.
+pub(super) fn place(words: &[&str], signed: bool) -> String {
+    let kinds: Vec<Option<ObjectKind>> = ObjectKind::ALL.into_iter().map(Some).chain([None]).collect();
+    format!("{}|{}|{}", one_of(words.iter().copied()), length(signed), selector(&kinds))
+}
+
 /// A colour: hexadecimal, or a CSS name in letters of either case; or one of some words, exactly.
 pub(super) fn color(words: &[&str]) -> String {
     let mut names: Vec<&str> = css_names().chain(["transparent"]).collect();

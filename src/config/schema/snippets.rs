@@ -69,6 +69,12 @@ pub(super) fn lengths() -> Value {
     ])
 }
 
+/// Some words, and a length in each unit.
+pub(super) fn words_and_lengths(words: &[&str]) -> Value {
+    let words = words.iter().map(|word| json!({ "label": format!("{word:?}"), "body": word }));
+    words.chain(lengths().as_array().cloned().unwrap_or_default()).collect()
+}
+
 /// A colour in each way of writing it.
 pub(super) fn colors() -> Value {
     json!([

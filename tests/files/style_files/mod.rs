@@ -7,6 +7,7 @@ mod extending;
 mod loading;
 pub mod mutations;
 mod resolving;
+mod selectors;
 mod source_lines;
 mod strays;
 mod syntax;

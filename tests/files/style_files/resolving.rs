@@ -1,7 +1,7 @@
 //! What the rules of a style come to for a scene, against the plain definition: the first rule that matches.
 
-use restyle::config::{Attribute, ObjectKind, Source, Style, load};
-use restyle::providers::{Assignment, ShaderProvider, unmatched};
+use restyle::config::{Attribute, ObjectKind, Selector, Source, Style, load};
+use restyle::providers::{Assignment, Picked, ShaderProvider, picked, unmatched};
 use restyle::scene::mesh::{RawPart, RawShape};
 use restyle::scene::{
     Assembly, Element, FileBond, MeshMaterial, MoleculeBuilder, Name, NewAtom, RawMesh, Report, Residue, Scene,
@@ -200,6 +200,18 @@ fn defined_unmatched(style: &Style, scene: &Scene) -> Vec<String> {
     rules.iter().map(|rule| rule.selector.to_string()).collect()
 }
 
+/// What a selector picks, as it is defined.
+fn defined_picked(selector: &Selector, scene: &Scene) -> Picked {
+    let picks = |kind, object: &Object| selector.matches(kind, &|attribute| object.get(attribute));
+    let atoms = atoms_of(scene);
+    let is_end = |atom: u32| picks(ObjectKind::Connector, &atoms[atom as usize]);
+    Picked {
+        atoms: atoms.iter().map(|atom| picks(ObjectKind::Atom, atom)).collect(),
+        connectors: scene.molecule.bonds.iter().map(|bond| is_end(bond.a) || is_end(bond.b)).collect(),
+        parts: parts_of(scene).iter().map(|part| picks(ObjectKind::Mesh, part)).collect(),
+    }
+}
+
 fn selectors_of(warnings: &[restyle::config::Warning]) -> Vec<String> {
     let selector = |warning: &restyle::config::Warning| match &warning.notice {
         restyle::config::Notice::MatchesNothing { selector, .. } => selector.clone(),
@@ -304,6 +316,22 @@ fn every_object_is_drawn_by_the_first_rule_that_matches() {
         }
     }
     assert!(outcomes.iter().all(|count| *count > NUM_STYLES / 2), "few of one outcome: {outcomes:?}");
+}
+
+#[test]
+fn every_object_that_matches_is_picked() {
+    let mut random = Random(20_160_302);
+    let mut outcomes = [0; 2];
+    for round in 0..NUM_STYLES {
+        let scene = random_scene(&mut random);
+        let text = random_selector(&mut random);
+        let selector = Selector::parse(&text).unwrap_or_else(|wrong| panic!("{wrong}"));
+        let found = picked(&scene, &selector);
+        assert_eq!(found, defined_picked(&selector, &scene), "round {round}: {text}");
+        assert_eq!(found.is_empty(), found.bounds(&scene).is_none(), "round {round}: {text}");
+        outcomes[usize::from(found.is_empty())] += 1;
+    }
+    assert!(outcomes.iter().all(|count| *count > NUM_STYLES / 10), "few of one outcome: {outcomes:?}");
 }
 
 /// The names of what draws the atoms, `-` where nothing does.
