@@ -34,6 +34,14 @@ fn diameters_of(texel: vec4<u32>) -> vec2<f32> {
     return select(vec2<f32>(0.0, focus_params.most_px.y), diameters_px(depth), texel.w != 0u);
 }
 
+// The diameter of each pixel's circle, -1 where no surface is.
+@fragment
+fn focus_aov(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let texel = textureLoad(geometry, vec2<i32>(position.xy), 0);
+    let blur = diameters_of(texel);
+    return vec4<f32>(select(-1.0, blur.x + blur.y, texel.w != 0u && bitcast<f32>(texel.x) > 0.0), 0.0, 0.0, 0.0);
+}
+
 // Linear colours of the five layers, from near to far.
 fn layer_color(layer: u32) -> vec3<f32> {
     var colors = array<vec3<f32>, 5>(

@@ -304,15 +304,25 @@ fn denoised(own: vec2<i32>, texel: vec4<u32>) -> f32 {
     return sum / max(weights, 1e-6);
 }
 
+// The share of light that is left to a surface.
+fn light_left(own: vec2<i32>, texel: vec4<u32>) -> f32 {
+    if OCCLUSION_PICKS && textureLoad(occlusion, own, 0).x == NOT_PICKED { return 1.0; }
+    return max(1.0 - occlusion_params.intensity * denoised(own, texel), 0.0);
+}
+
 @fragment
 fn apply_occlusion(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let own = vec2<i32>(position.xy);
     let texel = textureLoad(geometry, own, 0);
     var result = textureLoad(color, own, 0);
-    let is_left = OCCLUSION_PICKS && textureLoad(occlusion, own, 0).x == NOT_PICKED;
-    if is_surface(texel) && !is_left {
-        let light = max(1.0 - occlusion_params.intensity * denoised(own, texel), 0.0);
-        result = vec4<f32>(result.rgb * light, result.a);
-    }
+    if is_surface(texel) { result = vec4<f32>(result.rgb * light_left(own, texel), result.a); }
     return finished(result);
+}
+
+@fragment
+fn occlusion_aov(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let own = vec2<i32>(position.xy);
+    let texel = textureLoad(geometry, own, 0);
+    if !is_surface(texel) { return vec4<f32>(-1.0, 0.0, 0.0, 0.0); }
+    return vec4<f32>(light_left(own, texel), 0.0, 0.0, 0.0);
 }

@@ -49,6 +49,8 @@ const LEAST_STEP_PX: f32 = 1.0;
 const HALF_SEGMENT_PX: f32 = 0.71;
 // How far in front of an edge a pixel counts as beyond it: what a direction of 6 bits and a bent edge may be off by.
 const BEYOND_SLACK_PX: f32 = 0.25;
+// A line of which less covers a pixel does not decide how deep that lies.
+const LEAST_LINE: f32 = 0.25;
 // A seed holds radii below this, in eighths of a pixel.
 const MOST_RADIUS: f32 = 63.0;
 
@@ -312,7 +314,12 @@ struct Cover {
     // Share of the pixel that its neighbour in front does not cover, and that neighbour.
     behind: f32,
     front: vec2<i32>,
+    // The share of whichever line covers most, and how deep that lies; only where LEAVES_SURFACES.
+    most: f32,
+    depth: f32,
 }
+
+const NO_COVER: Cover = Cover(0.0, 0.0, 0.0, 1.0, vec2<i32>(0), 0.0, 0.0);
 
 // A seed as one pixel sees it.
 struct Near {
@@ -400,6 +407,10 @@ fn add_seed(before: Cover, seed: vec2<u32>, at: vec2<i32>, step: vec2<i32>, own:
         cover.silhouette = max(cover.silhouette, drawn);
         most = max(most, drawn);
     }
+    if LEAVES_SURFACES && most > cover.most {
+        cover.most = most;
+        cover.depth = covers_beyond;
+    }
     // The pixel right behind an edge shows what is in front where the edge runs through it.
     let shows = most > 0.0 && near.side != SIDE_BOTH && !near.in_front && (first || second);
     let behind = select(1.0, min(near.distance / near.footprint + 0.5, 1.0), shows);
@@ -417,17 +428,22 @@ fn may_cover(seed: vec2<u32>, depth: f32, touches: bool) -> bool {
     return seed.x != 0u && (touches || ((seed.x >> 3u) & 3u) == SIDE_BOTH || depth > bitcast<f32>(seed.y));
 }
 
-@fragment
-fn draw_lines(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let own = vec2<i32>(position.xy);
+// What lines cover of a pixel, near seeds or not.
+fn cover_at(own: vec2<i32>) -> Cover {
     let around = textureLoad(outline_around, vec2<i32>(own.x >> 5u, own.y), 0);
-    var cover = Cover(0.0, 0.0, 0.0, 1.0, own);
+    var cover = NO_COVER;
     // Far from all seeds the loops below are none.
     var is_near = ((around.x >> (u32(own.x) & 31u)) & 1u) == 1u;
     while is_near {
         is_near = false;
         cover = cover_of(own, around.y);
     }
+    return cover;
+}
+
+// A pixel with its lines.
+fn lined(own: vec2<i32>, covered: Cover) -> vec4<f32> {
+    var cover = covered;
     var result = textureLoad(color, own, 0);
     if OUTLINE_CREASES { result = over(result, outline_params.crease_color, cover.crease); }
     if OUTLINE_BOUNDARIES { result = over(result, outline_params.boundary_color, cover.boundary); }
@@ -436,7 +452,30 @@ fn draw_lines(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> 
         result = mix(textureLoad(color, cover.front, 0), result, cover.behind);
         cover.behind = 1.0;
     }
-    return finished(result);
+    return result;
+}
+
+@fragment
+fn draw_lines(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let own = vec2<i32>(position.xy);
+    return finished(lined(own, cover_at(own)));
+}
+
+struct LinedSurface {
+    @location(0) color: vec4<f32>,
+    @location(1) geometry: vec4<u32>,
+}
+
+// The same, and the surfaces with lines as hull outlines are, at depths below 0.
+@fragment
+fn draw_lines_as_surfaces(@builtin(position) position: vec4<f32>) -> LinedSurface {
+    let own = vec2<i32>(position.xy);
+    let cover = cover_at(own);
+    let texel = textureLoad(geometry, own, 0);
+    let line = vec4<u32>(bitcast<u32>(-cover.depth), texel.yz, max(texel.w, 1u));
+    // Over nothing it is all that is there; else what else is there is more, where a line covers little.
+    let least = select(LEAST_LINE, 0.0, texel.w == 0u);
+    return LinedSurface(finished(lined(own, cover)), select(texel, line, cover.most > least));
 }
 
 // All seeds within reach, from the pixel's own row outwards. In front of all that those cover (`least`), only the rows that can
@@ -446,7 +485,7 @@ fn cover_of(own: vec2<i32>, least: u32) -> Cover {
     let last = vec2<i32>(view.tile_size_px) - 1;
     let seen = textureLoad(geometry, own, 0);
     let depth = select(bitcast<f32>(seen.x), NOWHERE, seen.w == 0u);
-    var cover = Cover(0.0, 0.0, 0.0, 1.0, own);
+    var cover = NO_COVER;
     var rows = select(2 * reach + 2, 2, bitcast<u32>(max(depth, 0.0)) <= least);
     for (var row = 0; row < rows; row++) {
         // 0, one up, one down, two up ...

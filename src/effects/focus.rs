@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::{EffectContext, EffectPass, PassTarget, PostEffect};
+use super::{EffectAov, EffectContext, EffectPass, PassTarget, PostEffect};
 use crate::config::param::{Length, Param, Selector, Value, Values};
 use crate::gpu::{GpuStruct, StructInfo, Wgsl};
 use crate::{gpu_struct, wgsl};
@@ -263,6 +263,9 @@ impl PostEffect for Focus {
             _ if features & FIVE_LAYER != 0 => LAYERS,
             _ => GATHER,
         }
+    }
+    fn aov(&self) -> Option<EffectAov> {
+        Some(EffectAov { name: "coc", entry: "focus_aov" })
     }
     fn changes_nothing(&self, values: &Values, context: &EffectContext<'_>) -> Option<&'static str> {
         if values.choice("show") == "layers" {

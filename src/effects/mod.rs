@@ -81,6 +81,15 @@ pub struct EffectPass {
     pub target: PassTarget,
 }
 
+/// A picture of what an effect finds, beside the one that it changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct EffectAov {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// Its fragment entry, which reads what the last pass does.
+    pub entry: &'static str,
+}
+
 /// One way to change the picture.
 pub trait PostEffect: Sync {
     /// Its name in style files.
@@ -109,6 +118,15 @@ pub trait PostEffect: Sync {
     fn reach_px(&self, values: &Values, context: &EffectContext<'_>) -> u32;
     /// Its passes with such features, in order.
     fn passes(&self, features: u32) -> &'static [EffectPass];
+    /// The fragment entry that stands in for the last one where a later effect must know how deep lies what it draws: it
+    /// leaves the surfaces of all pixels as well.
+    fn surfaces_entry(&self) -> Option<&'static str> {
+        None
+    }
+    /// What it finds, as one number a pixel; -1 where nothing is.
+    fn aov(&self) -> Option<EffectAov> {
+        None
+    }
     /// Why such values change nothing in the picture, if so: the effect is then left out.
     fn changes_nothing(&self, _values: &Values, _context: &EffectContext<'_>) -> Option<&'static str> {
         None

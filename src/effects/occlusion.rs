@@ -3,7 +3,7 @@
 //! `gtao` and `bitmask` after [Jimenez2016, throughout] and [Therrien2023, throughout], `hemisphere` after [Prost2016 §4.2]; where we differ: see
 //! `shaders/effects/occlusion.wgsl`. Its exact form, by rays: `src/reference/occlusion.rs`. Twin: `tests/twins/occlusion.rs`.
 
-use super::{EffectContext, EffectPass, PassTarget, PostEffect};
+use super::{EffectAov, EffectContext, EffectPass, PassTarget, PostEffect};
 use crate::config::param::{Param, Selector, Values};
 use crate::gpu::{GpuStruct, StructInfo, Wgsl};
 use crate::{gpu_struct, wgsl};
@@ -141,6 +141,9 @@ impl PostEffect for AmbientOcclusion {
             EffectPass { name: "occlusion_applied", entry: "apply_occlusion", target: PassTarget::Picture },
         ];
         PASSES
+    }
+    fn aov(&self) -> Option<EffectAov> {
+        Some(EffectAov { name: "ao", entry: "occlusion_aov" })
     }
     fn changes_nothing(&self, values: &Values, context: &EffectContext<'_>) -> Option<&'static str> {
         if values.number("intensity") <= 0.0 {

@@ -149,6 +149,9 @@ impl PostEffect for Outline {
         ];
         PASSES
     }
+    fn surfaces_entry(&self) -> Option<&'static str> {
+        Some("draw_lines_as_surfaces")
+    }
     fn changes_nothing(&self, values: &Values, _: &EffectContext<'_>) -> Option<&'static str> {
         let is_any = WIDTHS.iter().any(|name| is_drawn(values.length(name)));
         (!is_any).then_some("its lines have no width")

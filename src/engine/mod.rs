@@ -350,7 +350,7 @@ impl Engine {
     /// # Errors
     /// As [`Engine::draw`].
     pub fn aovs(&mut self, request: &Request) -> Result<AovImage, GpuError> {
-        let Aovs { geometry, mut ids, color } =
+        let Aovs { geometry, mut ids, color, found } =
             self.with_input(request, |renderer, input| renderer.render_aovs(input))?;
         // Outlines are lines, not surfaces: they have no depth and no id.
         for (id, p) in ids.iter_mut().zip(geometry.chunks_exact(4)) {
@@ -358,7 +358,19 @@ impl Engine {
         }
         let depth = geometry.chunks_exact(4).map(|p| if p[3] < 0.0 { f32::INFINITY } else { p[3] }).collect();
         let normal = geometry.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
-        Ok(AovImage { size: request.size, depth, normal, ids, color })
+        // Where a frame lacks the effect, nothing is darkened, and all is sharp.
+        let without = |value: f32| ids.iter().map(move |id| if *id == 0 { -1.0 } else { value }).collect::<Vec<f32>>();
+        let (mut ao, mut coc) = (without(1.0), without(0.0));
+        for (effect, values) in found {
+            match EFFECTS[effect].aov().map(|aov| aov.name) {
+                Some("ao") => {
+                    ao.iter_mut().zip(values).filter(|(all, _)| **all > 0.0).for_each(|(all, one)| *all *= one)
+                }
+                Some("coc") => coc = values,
+                _ => {}
+            }
+        }
+        Ok(AovImage { size: request.size, depth, normal, ids, color, ao, coc })
     }
 
     fn with_input<T>(

@@ -42,7 +42,7 @@ impl Aov {
                     &aov_module(from.orthographic, from.meshes),
                     ["aov_vertex", "aov_fragment"],
                     &[&visibility.layout, &layout],
-                    GEOMETRY_FORMAT,
+                    &[GEOMETRY_FORMAT.into()],
                 )?;
                 entry.insert((layout, pipeline))
             }

@@ -2,7 +2,9 @@
 
 use super::shadow::{MAX_SHADOWS, ShadowMaps};
 use super::{FrameInput, OUTPUT_8, OUTPUT_16, Plan, light_format};
-use super::{post::COLOR_FORMAT, post::GEOMETRY_FORMAT, visibility::DEPTH_FORMAT, visibility::ID_FORMAT};
+use super::{
+    post::COLOR_FORMAT, post::GEOMETRY_FORMAT, post::num_left, visibility::DEPTH_FORMAT, visibility::ID_FORMAT,
+};
 use crate::effects::{EFFECTS, PassTarget};
 use crate::gpu::Gpu;
 use crate::shading::SHADERS;
@@ -70,7 +72,10 @@ pub fn steps(gpu: &Gpu, plan: &Plan, input: &FrameInput<'_>, counts: [u64; 3]) -
     let lights = plural(u64::from(plan.shade.lights), "light");
     let of_effects = match plan.effects.len() {
         0 => 0,
-        count => bytes_of(size, GEOMETRY_FORMAT) + count.min(2) as u64 * bytes_of(size, COLOR_FORMAT),
+        count => {
+            (1 + num_left(&plan.effects).min(1)) as u64 * bytes_of(size, GEOMETRY_FORMAT)
+                + count.min(2) as u64 * bytes_of(size, COLOR_FORMAT)
+        }
     };
     let beside = if of_effects > 0 { ", with the surface beside it for post effects" } else { "" };
     let reason = format!("{} in {lights}, once for each pixel that sees something{beside}", shaders.join(", "));

@@ -17,7 +17,7 @@ pub fn layout(gpu: &Gpu, label: &'static str, types: &[wgpu::BindingType]) -> wg
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
 }
 
-/// Builds a pipeline that covers the target with one triangle.
+/// Builds a pipeline that covers its targets with one triangle.
 ///
 /// # Errors
 /// [`GpuError::Driver`] where the shader does not compile.
@@ -27,7 +27,7 @@ pub fn pipeline(
     module: &Module,
     entries: [&str; 2],
     layouts: &[&wgpu::BindGroupLayout],
-    target: impl Into<wgpu::ColorTargetState>,
+    targets: &[wgpu::ColorTargetState],
 ) -> Result<wgpu::RenderPipeline, GpuError> {
     let module = module.compile(gpu, label)?;
     let layouts: Vec<Option<&wgpu::BindGroupLayout>> = layouts.iter().map(|layout| Some(*layout)).collect();
@@ -52,7 +52,7 @@ pub fn pipeline(
             module: &module,
             entry_point: Some(entries[1]),
             compilation_options: Default::default(),
-            targets: &[Some(target.into())],
+            targets: &targets.iter().cloned().map(Some).collect::<Vec<_>>(),
         }),
         multiview_mask: None,
         cache: None,
@@ -68,26 +68,25 @@ pub fn draw(
     target: &wgpu::TextureView,
     times: Option<wgpu::RenderPassTimestampWrites<'_>>,
 ) {
-    draw_onto(encoder, label, pipeline, groups, (target, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT)), times);
+    draw_onto(encoder, label, pipeline, groups, &[(target, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT))], times);
 }
 
-/// The same onto a target that is cleared or not.
+/// The same onto targets that are cleared or not.
 pub fn draw_onto(
     encoder: &mut wgpu::CommandEncoder,
     label: &'static str,
     pipeline: &wgpu::RenderPipeline,
     groups: &[(&wgpu::BindGroup, &[u32])],
-    (target, load): (&wgpu::TextureView, wgpu::LoadOp<wgpu::Color>),
+    targets: &[(&wgpu::TextureView, wgpu::LoadOp<wgpu::Color>)],
     times: Option<wgpu::RenderPassTimestampWrites<'_>>,
 ) {
+    let attachment = |&(view, load): &(_, wgpu::LoadOp<wgpu::Color>)| {
+        let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
+        Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
+    };
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some(label),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: target,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-        })],
+        color_attachments: &targets.iter().map(attachment).collect::<Vec<_>>(),
         depth_stencil_attachment: None,
         timestamp_writes: times,
         occlusion_query_set: None,

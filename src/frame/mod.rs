@@ -125,6 +125,8 @@ pub struct Aovs {
     pub ids: Vec<u32>,
     /// Premultiplied linear colour, four floats a pixel.
     pub color: Vec<f32>,
+    /// What post effects found, by their places in the registry: one float a pixel, -1 where nothing is.
+    pub found: Vec<(usize, Vec<f32>)>,
 }
 
 /// The passes of one frame and what they need, found before anything is made.
@@ -289,6 +291,17 @@ impl Renderer {
         timed: bool,
         progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
     ) -> Result<(), GpuError> {
+        self.draw_frame(input, timed, progress, None)
+    }
+
+    /// The same; what effects find goes to `found`, where there is one sample.
+    fn draw_frame(
+        &mut self,
+        input: &FrameInput<'_>,
+        timed: bool,
+        progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
+        found: Option<&mut Vec<(usize, wgpu::Texture)>>,
+    ) -> Result<(), GpuError> {
         let gpu = Arc::clone(&self.gpu);
         check_size(&gpu, input)?;
         let Some(materials) = self.contents.common() else { return Ok(()) };
@@ -298,7 +311,7 @@ impl Renderer {
         let plan = Plan::new(&gpu, &needs, input, self.shadow_quality);
         self.build(&needs, &plan, input.wide)?;
         let output_format = if input.wide { OUTPUT_16 } else { OUTPUT_8 };
-        self.targets.fit(&gpu, input.drawn_size(), output_format, !plan.direct, plan.effects.len());
+        self.targets.fit(&gpu, input.drawn_size(), output_format, !plan.direct, &plan.effects);
         let effect_bytes = self.post.fit(&gpu, input.drawn_size(), input.effects);
         self.fit_shadows(&plan);
 
@@ -329,7 +342,7 @@ impl Renderer {
         let Some((shade_group, background)) = self.shade.bind(&gpu, &plan.shade, &inputs)? else { return Ok(()) };
         let finished = light.as_ref().unwrap_or(&output);
         let shaded = self.targets.shaded_views();
-        let post = shaded.as_ref().map(|(geometry, colors)| PostTargets {
+        let post = shaded.as_ref().map(|[geometry, colors]| PostTargets {
             ids: &ids,
             geometry,
             colors,
@@ -352,7 +365,7 @@ impl Renderer {
         }
         let clear = if plan.shade.encode { clear_value(input.background) } else { wgpu::Color::TRANSPARENT };
         let shaded_light = post.as_ref().and_then(|post| post.colors.first()).unwrap_or(finished);
-        let geometry = post.as_ref().map(|post| post.geometry);
+        let geometry = post.as_ref().and_then(|post| post.geometry.first());
         let target = ShadeTarget { light: shaded_light, geometry, depth: &depth, clear };
         for index in 0..samples as usize {
             let pass = VisibilityPass {
@@ -375,6 +388,10 @@ impl Renderer {
                     return Err(GpuError::BrokenOff);
                 }
             }
+        }
+        if let (Some(found), Some(groups)) = (found, &effect_groups) {
+            let (keys, size) = (&plan.effects, input.drawn_size());
+            *found = self.post.draw_aovs(&gpu, &mut encoder, &self.visibility, keys, &scene, groups, size)?;
         }
         if let Some(light) = &light {
             self.resolve.draw(&gpu, &mut encoder, input.wide, &background, light, &output, &mut timer);
@@ -418,7 +435,8 @@ impl Renderer {
     pub fn render_aovs(&mut self, input: &FrameInput<'_>) -> Result<Aovs, GpuError> {
         // 16 bits keep the linear light of the single sample.
         let single = FrameInput { samples: 1, wide: true, tile: None, shadows_drawn: false, ..input.clone() };
-        self.render(&single, false, &mut |_| ControlFlow::Continue(()))?;
+        let mut found = Vec::new();
+        self.draw_frame(&single, false, &mut |_| ControlFlow::Continue(()), Some(&mut found))?;
         let gpu = Arc::clone(&self.gpu);
         let (view, objects, reach) =
             (View::new(input.camera, input.size), &self.contents.objects, self.contents.reach());
@@ -427,7 +445,7 @@ impl Renderer {
             None => None,
         };
         let Some(scene) = scene else {
-            return Ok(Aovs { geometry: Vec::new(), ids: Vec::new(), color: Vec::new() });
+            return Ok(Aovs { geometry: Vec::new(), ids: Vec::new(), color: Vec::new(), found: Vec::new() });
         };
         let [ids, _, _] = self.targets.views()?;
         let geometry = gpu.target("geometry", input.size, 1, aov::GEOMETRY_FORMAT);
@@ -449,7 +467,9 @@ impl Renderer {
         } else {
             floats(read_texture(&gpu, light, 16)?)
         };
+        let found = found.into_iter().map(|(effect, texture)| Ok((effect, floats(read_texture(&gpu, &texture, 4)?))));
         Ok(Aovs {
+            found: found.collect::<Result<_, GpuError>>()?,
             geometry: floats(read_texture(&gpu, &geometry, 16)?),
             ids: read_texture(&gpu, self.targets.ids()?, 4)?
                 .chunks_exact(4)

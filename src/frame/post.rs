@@ -14,6 +14,9 @@ pub const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 /// The surface of one sample: see `shaders/lib/geometry.wgsl`.
 pub const GEOMETRY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 
+/// What an effect finds, one number a pixel.
+const AOV_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+
 /// A post effect as a frame uses it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Effect {
@@ -49,6 +52,8 @@ pub struct EffectKey {
     pub orthographic: bool,
     /// Where its picture goes.
     pub finish: Finish,
+    /// Whether it also leaves the surfaces, for the next effect.
+    pub leaves_surfaces: bool,
 }
 
 /// The keys of a chain of effects.
@@ -67,6 +72,7 @@ pub fn keys(effects: &[Effect], orthographic: bool, encode: bool) -> Vec<EffectK
             features: effect.features,
             orthographic,
             finish: finish(index),
+            leaves_surfaces: index < last && EFFECTS[effect.effect].surfaces_entry().is_some(),
         })
         .collect()
 }
@@ -93,8 +99,8 @@ pub type EffectGroups = Vec<Vec<wgpu::BindGroup>>;
 pub struct PostTargets<'a> {
     /// Ids of the visibility pass.
     pub ids: &'a wgpu::TextureView,
-    /// The surfaces.
-    pub geometry: &'a wgpu::TextureView,
+    /// The surfaces that were shaded, and another texture of them where an effect leaves its own.
+    pub geometry: &'a [wgpu::TextureView],
     /// The picture that was shaded, and another one where there are more effects than one.
     pub colors: &'a [wgpu::TextureView],
     /// Where the last effect draws.
@@ -173,7 +179,8 @@ impl Post {
     ) -> Result<Option<EffectGroups>, GpuError> {
         let mut groups = Vec::with_capacity(keys.len());
         for (index, ((slot, effect), key)) in self.slots.iter_mut().zip(effects).zip(keys).enumerate() {
-            let (Some(pipelines), Some(color)) = (self.pipelines.get(key), source(targets, index)) else {
+            let inputs = (turn(targets.colors, index), turn(targets.geometry, num_left(&keys[..index])));
+            let (Some(pipelines), (Some(color), Some(geometry))) = (self.pipelines.get(key), inputs) else {
                 return Ok(None);
             };
             let params = slot.params.set(gpu, &effect.params, 0)?;
@@ -182,7 +189,7 @@ impl Post {
                 let mut bound = vec![
                     (0, Bound::Buffer(params.clone())),
                     (1, Bound::Buffer(targets.output.clone())),
-                    (2, Bound::View(targets.geometry.clone())),
+                    (2, Bound::View(geometry.clone())),
                     (3, Bound::View(color.clone())),
                     (4, Bound::View(targets.ids.clone())),
                 ];
@@ -211,26 +218,68 @@ impl Post {
         for (index, ((slot, key), groups)) in self.slots.iter().zip(keys).zip(groups).enumerate() {
             let Some(pipelines) = self.pipelines.get(key) else { return };
             let last = match key.finish {
-                Finish::Next => source(targets, index + 1).map(|color| (color, nothing)),
+                Finish::Next => turn(targets.colors, index + 1).map(|color| (color, nothing)),
                 _ if view_index > 0 => Some((targets.last, wgpu::LoadOp::Load)),
                 _ => Some((targets.last, nothing)),
             };
-            let onto = slot.own.iter().map(|target| (&target.view, nothing)).chain(last);
+            let surfaces = turn(targets.geometry, num_left(&keys[..=index])).filter(|_| key.leaves_surfaces);
+            let last = last.into_iter().chain(surfaces.map(|surfaces| (surfaces, nothing))).collect();
+            let onto = slot.own.iter().map(|target| vec![(&target.view, nothing)]).chain([last]);
             for (((pass, (_, pipeline)), group), onto) in
                 EFFECTS[key.effect].passes(key.features).iter().zip(pipelines).zip(groups).zip(onto)
             {
                 let times = timer.as_mut().and_then(|timer| timer.pass(pass.name));
                 let groups: &[(&wgpu::BindGroup, &[u32])] =
                     &[(&scene.group, &[SceneBindings::offset(view_index)]), (group, &[])];
-                fullscreen::draw_onto(encoder, pass.name, pipeline, groups, onto, times);
+                fullscreen::draw_onto(encoder, pass.name, pipeline, groups, &onto, times);
             }
         }
     }
 }
 
-/// The picture that the effect at this place of the chain reads.
-fn source<'a>(targets: &PostTargets<'a>, index: usize) -> Option<&'a wgpu::TextureView> {
-    targets.colors.get(index % targets.colors.len().max(1))
+impl Post {
+    /// Draws what the effects of a frame find, each into a texture of its own, by their places in the registry.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] where a shader does not compile.
+    pub fn draw_aovs(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        visibility: &Visibility,
+        keys: &[EffectKey],
+        scene: &SceneBindings,
+        groups: &EffectGroups,
+        size: [u32; 2],
+    ) -> Result<Vec<(usize, wgpu::Texture)>, GpuError> {
+        let mut aovs = Vec::new();
+        for (key, groups) in keys.iter().zip(groups) {
+            let layout = self.pipelines.get(key).and_then(|pipelines| pipelines.last());
+            let (Some(aov), Some((layout, _)), Some(group)) = (EFFECTS[key.effect].aov(), layout, groups.last()) else {
+                continue;
+            };
+            let entries = ["post_vertex", aov.entry];
+            let layouts = [&visibility.layout, layout];
+            let pipeline =
+                fullscreen::pipeline(gpu, aov.name, &effect_module(key), entries, &layouts, &[AOV_FORMAT.into()])?;
+            let texture = gpu.target(aov.name, size, 1, AOV_FORMAT);
+            let target = texture.create_view(&Default::default());
+            let groups: &[(&wgpu::BindGroup, &[u32])] = &[(&scene.group, &[SceneBindings::offset(0)]), (group, &[])];
+            fullscreen::draw(encoder, aov.name, &pipeline, groups, &target, None);
+            aovs.push((key.effect, texture));
+        }
+        Ok(aovs)
+    }
+}
+
+/// Of textures that are read and drawn to in turn the one at a place of the chain.
+fn turn(textures: &[wgpu::TextureView], index: usize) -> Option<&wgpu::TextureView> {
+    textures.get(index % textures.len().max(1))
+}
+
+/// How many of some effects leave surfaces.
+pub fn num_left(keys: &[EffectKey]) -> usize {
+    keys.iter().filter(|key| key.leaves_surfaces).count()
 }
 
 fn build(gpu: &Gpu, visibility: &Visibility, key: &EffectKey) -> Result<Pipelines, GpuError> {
@@ -248,8 +297,12 @@ fn build(gpu: &Gpu, visibility: &Visibility, key: &EffectKey) -> Result<Pipeline
             (PassTarget::Picture, Finish::Add) => super::adding_light(gpu),
             (PassTarget::Picture, Finish::Encode) => super::OUTPUT_8.into(),
         };
-        let entries = ["post_vertex", pass.entry];
-        let pipeline = fullscreen::pipeline(gpu, pass.name, &module, entries, &[&visibility.layout, &layout], target)?;
+        let is_last = pass.target == PassTarget::Picture;
+        let as_surfaces = EFFECTS[key.effect].surfaces_entry().filter(|_| is_last && key.leaves_surfaces);
+        let entries = ["post_vertex", as_surfaces.unwrap_or(pass.entry)];
+        let layouts = [&visibility.layout, &layout];
+        let targets: Vec<_> = [target].into_iter().chain(as_surfaces.map(|_| GEOMETRY_FORMAT.into())).collect();
+        let pipeline = fullscreen::pipeline(gpu, pass.name, &module, entries, &layouts, &targets)?;
         Ok((layout, pipeline))
     };
     passes.iter().enumerate().map(build).collect()
@@ -275,7 +328,7 @@ pub fn effect_module(key: &EffectKey) -> Module {
         Finish::Encode => 2,
     };
     let mut bindings = format!(
-        "const ORTHOGRAPHIC: bool = {};\nconst FINISH: u32 = {finish}u;\n\
+        "const ORTHOGRAPHIC: bool = {};\nconst FINISH: u32 = {finish}u;\nconst LEAVES_SURFACES: bool = {};\n\
          @group(0) @binding(0) var<uniform> view: View;\n\
          @group(0) @binding(1) var atoms: texture_2d<u32>;\n\
          @group(0) @binding(2) var connectors: texture_2d<u32>;\n\
@@ -286,6 +339,7 @@ pub fn effect_module(key: &EffectKey) -> Module {
          @group(1) @binding(3) var color: texture_2d<f32>;\n\
          @group(1) @binding(4) var ids: texture_2d<u32>;\n",
         key.orthographic,
+        key.leaves_surfaces,
         effect.file(),
         effect.params_info().name
     );

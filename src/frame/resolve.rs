@@ -25,8 +25,14 @@ impl Resolve {
         let light = fullscreen::texture(wgpu::TextureSampleType::Float { filterable: false });
         let layout = fullscreen::layout(gpu, "resolve", &[fullscreen::UNIFORM, light]);
         let (entry, format) = if wide { ("resolve_16", super::OUTPUT_16) } else { ("resolve_8", super::OUTPUT_8) };
-        let pipeline =
-            fullscreen::pipeline(gpu, "resolve", &resolve_module(), ["resolve_vertex", entry], &[&layout], format)?;
+        let pipeline = fullscreen::pipeline(
+            gpu,
+            "resolve",
+            &resolve_module(),
+            ["resolve_vertex", entry],
+            &[&layout],
+            &[format.into()],
+        )?;
         self.pipelines.insert(wide, (layout, pipeline));
         Ok(())
     }

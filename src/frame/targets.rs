@@ -1,6 +1,6 @@
 //! The pictures that passes draw to, kept from frame to frame while size and need stay.
 
-use super::post::{COLOR_FORMAT, GEOMETRY_FORMAT};
+use super::post::{COLOR_FORMAT, EffectKey, GEOMETRY_FORMAT, num_left};
 use super::{DEPTH_FORMAT, ID_FORMAT, light_format};
 use crate::gpu::{Gpu, GpuError};
 
@@ -30,7 +30,8 @@ impl Target {
 
 /// What post effects read: the light of one sample, and its surfaces.
 struct Shaded {
-    geometry: Target,
+    /// Two only where an effect leaves surfaces to the next one.
+    geometry: Vec<Target>,
     /// Two only where one effect's picture is the next one's.
     colors: Vec<Target>,
 }
@@ -54,8 +55,8 @@ pub struct Targets {
 
 impl Targets {
     /// Makes the targets fit; what fits already stays. `light` asks for the target in which samples add up, `effects` for
-    /// what so many post effects read.
-    pub fn fit(&mut self, gpu: &Gpu, size: [u32; 2], output: wgpu::TextureFormat, light: bool, effects: usize) {
+    /// what such post effects read.
+    pub fn fit(&mut self, gpu: &Gpu, size: [u32; 2], output: wgpu::TextureFormat, light: bool, effects: &[EffectKey]) {
         let former = self.set.take().filter(|set| set.size == size);
         let make = |label, format| Target::new(gpu, label, size, format);
         let (ids, depth, former_output, former_light, former_shaded) = match former {
@@ -65,12 +66,16 @@ impl Targets {
         let output =
             former_output.filter(|target| target.texture.format() == output).unwrap_or_else(|| make("output", output));
         let light = light.then(|| former_light.unwrap_or_else(|| make("light", light_format(gpu))));
-        let shaded = (effects > 0).then(|| {
-            let mut shaded = former_shaded
-                .unwrap_or_else(|| Shaded { geometry: make("geometry", GEOMETRY_FORMAT), colors: Vec::new() });
-            shaded.colors.truncate(effects);
-            while shaded.colors.len() < effects.min(2) {
+        let shaded = (!effects.is_empty()).then(|| {
+            let mut shaded = former_shaded.unwrap_or_else(|| Shaded { geometry: Vec::new(), colors: Vec::new() });
+            let counts = [effects.len().min(2), 1 + num_left(effects).min(1)];
+            shaded.colors.truncate(counts[0]);
+            shaded.geometry.truncate(counts[1]);
+            while shaded.colors.len() < counts[0] {
                 shaded.colors.push(make("color", COLOR_FORMAT));
+            }
+            while shaded.geometry.len() < counts[1] {
+                shaded.geometry.push(make("geometry", GEOMETRY_FORMAT));
             }
             shaded
         });
@@ -96,9 +101,9 @@ impl Targets {
     }
 
     /// The surfaces of a sample and the pictures that effects change in turn, if this frame has effects.
-    pub fn shaded_views(&self) -> Option<(wgpu::TextureView, Vec<wgpu::TextureView>)> {
+    pub fn shaded_views(&self) -> Option<[Vec<wgpu::TextureView>; 2]> {
         let shaded = self.set.as_ref()?.shaded.as_ref()?;
-        Some((shaded.geometry.view.clone(), shaded.colors.iter().map(|color| color.view.clone()).collect()))
+        Some([&shaded.geometry, &shaded.colors].map(|of| of.iter().map(|target| target.view.clone()).collect()))
     }
 
     /// The picture.
@@ -142,7 +147,7 @@ impl Targets {
         let mut all = vec![("ids", set.ids.bytes()), ("depth", set.depth.bytes()), ("output", set.output.bytes())];
         all.extend(set.light.as_ref().map(|light| ("light", light.bytes())));
         if let Some(shaded) = &set.shaded {
-            all.push(("geometry", shaded.geometry.bytes()));
+            all.push(("geometry", shaded.geometry.iter().map(Target::bytes).sum()));
             all.push(("color", shaded.colors.iter().map(Target::bytes).sum()));
             all.push(("effects", self.effect_bytes));
         }

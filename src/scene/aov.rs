@@ -18,12 +18,22 @@ pub enum AovName {
     Id,
     /// Premultiplied linear colour.
     Color,
+    /// Share of light that ambient occlusion leaves, -1 where nothing is.
+    Ao,
+    /// Diameter of the circle of confusion in pixels, -1 where nothing is.
+    Coc,
 }
 
 impl AovName {
     /// All of them, by their names on the command line.
-    pub const ALL: [(&'static str, AovName); 4] =
-        [("depth", AovName::Depth), ("normal", AovName::Normal), ("id", AovName::Id), ("color", AovName::Color)];
+    pub const ALL: [(&'static str, AovName); 6] = [
+        ("depth", AovName::Depth),
+        ("normal", AovName::Normal),
+        ("id", AovName::Id),
+        ("color", AovName::Color),
+        ("ao", AovName::Ao),
+        ("coc", AovName::Coc),
+    ];
 }
 
 /// One sample at each pixel's centre, rows from the top.
@@ -39,6 +49,10 @@ pub struct AovImage {
     pub ids: Vec<u32>,
     /// Four floats a pixel, premultiplied linear.
     pub color: Vec<f32>,
+    /// Share of light that ambient occlusion leaves, -1 where nothing is.
+    pub ao: Vec<f32>,
+    /// Diameter of the circle of confusion in pixels, -1 where nothing is.
+    pub coc: Vec<f32>,
 }
 
 impl AovImage {
@@ -57,6 +71,8 @@ impl AovImage {
                 .enumerate()
                 .map(|(offset, channel)| AnyChannel::new(channel, plane(&self.normal, 3, offset)))
                 .collect(),
+            AovName::Ao => vec![AnyChannel::new("Y", plane(&self.ao, 1, 0))],
+            AovName::Coc => vec![AnyChannel::new("Y", plane(&self.coc, 1, 0))],
             AovName::Id => vec![AnyChannel::new("id", FlatSamples::U32(self.ids.clone()))],
             AovName::Color => ["R", "G", "B", "A"]
                 .into_iter()
