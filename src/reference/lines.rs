@@ -43,6 +43,9 @@ pub struct Grid<'a> {
     pub origin_px: DVec2,
     /// Places to each side of a pixel.
     pub side: u32,
+    /// How much farther lines reach than they are wide, in places, -0.5 to 0.5: over many grids they are as wide as they should be,
+    /// however coarse each is.
+    pub dither: f64,
     /// Places across and down.
     pub size: [usize; 2],
     /// What each sees, row by row.
@@ -100,7 +103,7 @@ impl Grid<'_> {
         // A line fades where it is as wide as what it outlines.
         let fade_from = if mark.outermost { 0.5 } else { 2.0 * width.clamp(0.01, 2.0) };
         let share = (mark.radius_px / fade_from).min(1.0);
-        let reach = f64::from(self.side) * if mark.front.is_some() { width } else { 0.5 * width };
+        let reach = self.dither + f64::from(self.side) * if mark.front.is_some() { width } else { 0.5 * width };
         let last = DVec2::new(self.size[0] as f64 - 1.0, self.size[1] as f64 - 1.0);
         let low = (mark.at - reach - 0.5).ceil().max(DVec2::ZERO);
         let high = (mark.at + reach - 0.5).floor().min(last);

@@ -34,6 +34,7 @@ const WHOLE_SAMPLES: u32 = 64;
 /// What `sampling::seed` is asked for.
 const FOR_PLACE: u32 = 0;
 const FOR_LENS: u32 = 1;
+const FOR_LINES: u32 = 2;
 const FOR_ENVIRONMENT: u32 = 3;
 const FOR_LIGHTS: u32 = 8;
 const FOR_OCCLUSIONS: u32 = 256;
@@ -196,11 +197,15 @@ impl Picture<'_> {
         let margin = reach.fold(0.0, f64::max).ceil() as usize + 1;
         let (cells, edge) = (side as usize, margin * side as usize);
         let [inner_width, inner_height] = tile.size.map(|length| length as usize * cells);
+        // A grid for each sample has its own.
+        let dither = indices.first().filter(|_| lens.is_some());
+        let dither = dither.map_or(0.0, |index| spread(*index, seed([0, 0], 0, FOR_LINES)).x - 0.5);
         let mut grid = Grid {
             optics: &self.optics,
             lens,
             origin_px: DVec2::new(f64::from(tile.origin[0]), f64::from(tile.origin[1])) - margin as f64,
             side,
+            dither,
             size: [inner_width + 2 * edge, inner_height + 2 * edge],
             places: Vec::new(),
         };

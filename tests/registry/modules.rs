@@ -178,7 +178,8 @@ fn effect_keys() -> Vec<EffectKey> {
         for features in 0..1 << registered.features().len() {
             for orthographic in [false, true] {
                 let ends = [(Finish::Next, false), (Finish::Next, true), (Finish::Add, false), (Finish::Encode, false)];
-                let key = |(finish, leaves_surfaces)| EffectKey { effect, features, orthographic, finish, leaves_surfaces };
+                let key =
+                    |(finish, leaves_surfaces)| EffectKey { effect, features, orthographic, finish, leaves_surfaces };
                 keys.extend(ends.map(key));
             }
         }

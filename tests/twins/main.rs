@@ -19,6 +19,7 @@ mod reference;
 mod sampling;
 mod shadows;
 mod surface;
+mod together;
 mod toon;
 mod truth;
 mod unlit;

@@ -179,18 +179,18 @@ fn occlusion_below_a_sphere_is_the_integral() {
     }
 }
 
-fn style(text: &str) -> config::Style {
+pub fn style(text: &str) -> config::Style {
     let catalog = Catalog { shaders: &engine::catalog(), kinds: engine::DRAWN_KINDS };
     config::load(&Source::new("test.json", text), &catalog).unwrap_or_else(|wrong| panic!("{wrong}"))
 }
 
-fn shipped_scene(name: &str) -> Scene {
+pub fn shipped_scene(name: &str) -> Scene {
     let all = shipped::SCENES.iter().copied().flatten();
     let found = all.into_iter().find(|shipped| shipped.name == name).expect("a shipped scene");
     Scene::from_bytes(found.file, found.bytes).expect("it loads")
 }
 
-fn exact_still(scene: &str, style: &config::Style, request: &Request, threads: usize) -> Image {
+pub fn exact_still(scene: &str, style: &config::Style, request: &Request, threads: usize) -> Image {
     let exact = Exact::new(shipped_scene(scene), style.clone(), Some(threads));
     exact.still(request, &mut |_| ControlFlow::Continue(())).expect("a picture")
 }
