@@ -42,7 +42,7 @@ pub const PARAMS: &[Param] = &[
         .ascending()
         .range(0.0, 1.0)
         .doc("Depths from 0, the sphere's nearest point, to 1: sharp between the middle two, blurred beyond the others.")
-        .examples(&["[0, 0, 0.3, 0.6]", "[0.3, 0.5, 0.6, 0.9]", "[0.4, 0.7, 1, 1]"]),
+        .examples(&["[0, 0, 0.3, 0.6]", "[0.4, 0.7, 1, 1]"]),
     Param::place("focus", FOCUS, "layers")
         .doc("What is sharp: layers, or as through a lens the scene's center, what lies this far from the camera, or what is picked.")
         .examples(&[r#""layers""#, r#""center""#]),

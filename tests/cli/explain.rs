@@ -19,15 +19,16 @@ fn names(passes: &[Json], drawn: bool) -> String {
 fn every_look_has_the_passes_that_it_needs() {
     let Some(folder) = Folder::with_adapter("explain-looks") else { return };
     let lines = "outline_seeds outline_words outline_beside outline_around outline";
+    let focus = "circles widest reaching fields focused";
     for (look, drawn, left_out) in [
         (
             "advertisement",
-            "shadow visibility shade occlusion occlusion_applied resolve".to_owned(),
-            "hull outlines outlinePost dofPost",
+            format!("shadow visibility shade occlusion occlusion_applied {focus} resolve"),
+            "hull outlines outlinePost",
         ),
         ("education", "visibility hull outlines shade resolve".to_owned(), "shadow ssaoPost outlinePost dofPost"),
         ("scientific", "visibility shade resolve".to_owned(), "shadow hull outlines ssaoPost outlinePost dofPost"),
-        ("future", "visibility shade resolve".to_owned(), "shadow hull outlines ssaoPost outlinePost dofPost"),
+        ("future", format!("visibility shade {focus} resolve"), "shadow hull outlines ssaoPost outlinePost"),
         ("illustrative", format!("shadow visibility shade {lines} {lines} resolve"), "hull outlines ssaoPost dofPost"),
         ("technical", format!("visibility shade {lines} resolve"), "shadow hull outlines ssaoPost dofPost"),
     ] {
@@ -45,6 +46,7 @@ fn bytes_are_those_of_the_frame() {
         "c60 -s illustrative --size 90x70 --samples 1",
         "bracket -s technical --size 65x33 --samples 1",
         "caffeine -s education --size 64x64 --samples 1",
+        "c60 -s future --size 64x40 --samples 1",
     ] {
         let said: u64 = passes(&folder, args).iter().map(|pass| pass["bytes"].as_u64().expect("bytes")).sum();
         let out = folder.run(&format!("render {args} --json")).done().out;
@@ -65,7 +67,7 @@ fn what_is_left_out_says_why() {
                 { "name": "tiny", "shader": "ssaoPost", "properties": { "radius": "0.0001r" } },
                 { "name": "meshes", "shader": "ssaoPost", "properties": { "applies_to": "mesh" } },
                 { "name": "none", "shader": "outlinePost", "properties": { "silhouette_width": 0, "boundary_width": 0 } },
-                { "name": "blur", "shader": "dofPost" }] }"#,
+                { "name": "blur", "shader": "dofPost", "properties": { "blur": "1pt" } }] }"#,
     );
     let out = folder.run("explain water -s s.json --size 100x80 --samples 1").done().out;
     for words in [
@@ -78,7 +80,7 @@ fn what_is_left_out_says_why() {
         "ssaoPost             its radius is less than 1.5 pixels anywhere",
         "ssaoPost             it applies to nothing in this scene",
         "outlinePost          its lines have no width",
-        "dofPost              the reference renderer alone draws it so far",
+        "dofPost              nothing of the scene is blurred by half a pixel",
     ] {
         assert!(out.contains(words), "{words:?} is not in\n{out}");
     }

@@ -44,12 +44,14 @@ impl Strip {
 }
 
 /// Parameters without pictures: they change nothing in a still, or no more than its noise, or only what others show is changed.
-const UNSEEN: [(&str, &str); 5] = [
+const UNSEEN: [(&str, &str); 7] = [
     ("geometry", "file_unit"),
     ("lights", "movable"),
     ("ssaoPost", "samples"),
     ("ssaoPost", "blur"),
     ("ssaoPost", "applies_to"),
+    ("dofPost", "method"),
+    ("dofPost", "focus"),
 ];
 
 /// What a parameter is shown on.
@@ -288,6 +290,13 @@ const SETTINGS: &[Setting] = &[
         scene: Molecule::Shipped("arsenic_trioxide"),
         said: "A cage of arsenic and oxygen, with a `radius` of `4r` where it is not the one that changes.",
         style: r##"{ "geometry": { "scale": 0.5 }, "shaders": [{ "name": "shown", "properties": { "radius": "4r" } }] }"##,
+    },
+    Setting {
+        group: "dofPost",
+        param: "",
+        scene: Molecule::Shipped("benzene"),
+        said: "Benzene from the side, with `layers` of `[0, 0.1, 0.3, 0.7]` and a `blur` of `90pt` where those do not change.",
+        style: r##"{ "camera": { "position": [0.6, -2.2, 1.4] }, "shaders": [{ "name": "shown", "properties": { "layers": [0, 0.1, 0.3, 0.7], "blur": "90pt" } }] }"##,
     },
     // Any shader, also one that this table does not know yet.
     Setting {
