@@ -71,4 +71,49 @@ for scene in alpha_helix gearbox; do
 done
 convert \( "$work"/alpha_helix_{without,with,rays}.png +append \) \( "$work"/gearbox_{without,with,rays}.png +append \) -append \
   -strip +dither -colors 255 png8:fig5_occlusion.png
+
+# Fig. 6: the five layers, by circles, in five layers, and through a whole lens.
+for kind in '"show": "layers"' '"method": "gather"' '"method": "five_layer"'; do
+  name=$(printf '%s' "$kind" | tr -dc 'a-z_')
+  cat > "$work/$name.json" <<JSON
+{ "extends": "advertisement", "mapping": { "post_effects": ["focus"] },
+  "shaders": [ { "name": "focus", "shader": "dofPost", "properties": { "layers": [0, 0.15, 0.35, 0.7], "blur": "40pt", $kind } } ] }
+JSON
+  for scene in c60 gearbox; do
+    "$restyle" render "$scene" -s "$work/$name.json" -o "$work/${scene}_$name.png" --size 300x280 2>/dev/null
+  done
+done
+for scene in c60 gearbox; do
+  "$restyle" render "$scene" -s "$work/methodgather.json" -o "$work/${scene}_lens.png" --size 300x280 --renderer reference 2>/dev/null
+done
+convert \( "$work"/c60_{showlayers,methodgather,methodfive_layer,lens}.png +append \) \
+  \( "$work"/gearbox_{showlayers,methodgather,methodfive_layer,lens}.png +append \) -append -strip +dither -colors 255 png8:fig6_layers.png
+
+# All ways to switch shadows, lines, occlusion and depth of field on and off.
+for scene in caffeine bracket; do
+  for after in '' '"ao"' '"focus"' '"ao", "focus"'; do
+    row=()
+    for before in '' '"lines"'; do
+      for shadow in none soft; do
+        listed=$(printf '%s\n' "$after" "$before" | tr ',' '\n' | tr -d ' ' | sed '/^$/d' | sort | paste -sd, | sed 's/"focus","lines"/"lines","focus"/')
+        cat > "$work/one.json" <<JSON
+{ "camera": { "bgcolor": "#dfe4ea" }, "geometry": { "atom": "vdw", "scale": 0.4, "bond_radius": "0.2A" },
+  "mapping": { "*": "matt", "post_effects": [$listed] },
+  "shaders": [ { "name": "matt", "shader": "basic", "properties": { "smoothness": 0.2, "metallic": 0 } },
+    { "name": "ao", "shader": "ssaoPost" },
+    { "name": "lines", "shader": "outlinePost", "properties": { "silhouette_width": "6pt", "crease_width": 0 } },
+    { "name": "focus", "shader": "dofPost", "properties": { "layers": [0, 0.2, 0.4, 0.8], "blur": "30pt" } } ],
+  "lights": [ { "type": "directional", "position": [-1, 2, 1.5], "intensity": 2, "shadow": "$shadow", "strength": 0.7, "softness": 8 },
+    { "type": "ambient", "intensity": 0.5 } ] }
+JSON
+        picture="$work/${scene}_${#after}_${#before}_$shadow.png"
+        "$restyle" render "$scene" -s "$work/one.json" -o "$picture" --size 180x180 2>/dev/null
+        row+=("$picture")
+      done
+    done
+    convert "${row[@]}" +append "$work/${scene}_row_${#after}.png"
+  done
+  convert "$work/${scene}"_row_{0,4,7,13}.png -append "$work/${scene}_together.png"
+done
+convert "$work"/{caffeine,bracket}_together.png +append -strip +dither -colors 255 png8:together.png
 ls -l -- *.png
