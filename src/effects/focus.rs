@@ -48,7 +48,7 @@ pub const PARAMS: &[Param] = &[
         .examples(&[r#""layers""#, r#""center""#]),
     Param::length("blur", "16pt")
         .doc("Width of the blur beyond layers, or through a lens at the first or last of them, whichever is farther; at most 135pt.")
-        .examples(&[r#""20pt""#, r#""120pt""#]),
+        .examples(&[r#""20pt""#, r#""90pt""#]),
     Param::choice("show", SHOW, "picture")
         .doc("What is drawn: the picture, or in flat colours which of the five layers is where.")
         .examples(&[r#""picture""#, r#""layers""#]),

@@ -242,6 +242,7 @@ impl Post {
     ///
     /// # Errors
     /// [`GpuError::Driver`] where a shader does not compile.
+    #[allow(clippy::too_many_arguments)]
     pub fn draw_aovs(
         &self,
         gpu: &Gpu,

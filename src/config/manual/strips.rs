@@ -295,8 +295,8 @@ const SETTINGS: &[Setting] = &[
         group: "dofPost",
         param: "",
         scene: Molecule::Shipped("benzene"),
-        said: "Benzene from the side, with `layers` of `[0, 0.1, 0.3, 0.7]` and a `blur` of `90pt` where those do not change.",
-        style: r##"{ "camera": { "position": [0.6, -2.2, 1.4] }, "shaders": [{ "name": "shown", "properties": { "layers": [0, 0.1, 0.3, 0.7], "blur": "90pt" } }] }"##,
+        said: "Benzene from the side, with `layers` of `[0, 0.1, 0.3, 0.7]` and a `blur` of `70pt` where those do not change.",
+        style: r##"{ "camera": { "position": [0.6, -2.2, 1.4] }, "shaders": [{ "name": "shown", "properties": { "layers": [0, 0.1, 0.3, 0.7], "blur": "70pt" } }] }"##,
     },
     // Any shader, also one that this table does not know yet.
     Setting {

@@ -108,7 +108,7 @@ pub struct Dof;
 fn chequered(even: &'static str, odd: &'static str) -> Vec<Cuboid> {
     let tile = |index: u32| {
         let [x, y] = [index % 8, index / 8].map(|at| f64::from(at) / 4.0 - 1.0);
-        let part = if (index % 8 + index / 8) % 2 == 0 { even } else { odd };
+        let part = if (index % 8 + index / 8).is_multiple_of(2) { even } else { odd };
         (part, [x, y, -0.05], [x + 0.25, y + 0.25, 0.0])
     };
     (0..64).map(tile).collect()
@@ -129,7 +129,7 @@ fn plane() -> Result<Scene, MeasureError> {
         let z = f64::from(index) / 6.0 - 1.75;
         let part = match index {
             10 => "green",
-            _ if index % 2 == 0 => "red",
+            _ if index.is_multiple_of(2) => "red",
             _ => "blue",
         };
         (part, [-1.0, -0.05, z], [1.0, 0.0, z + 1.0 / 6.0])
