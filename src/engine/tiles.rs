@@ -28,6 +28,9 @@ impl From<GpuError> for TileError {
     }
 }
 
+/// Pixels to a side of the largest texel that an effect has.
+const LARGEST_TEXEL_PX: u32 = 32;
+
 /// The tiles along one side: what each holds of the picture, and what is drawn for it, which reaches `margin` farther.
 fn spans(length: u32, margin: u32) -> impl Iterator<Item = (Range<u32>, Range<u32>)> {
     (0..length.div_ceil(TILE_PX)).map(move |index| {
@@ -76,7 +79,8 @@ impl Engine {
         let [width, height] = request.size;
         let bytes_per_pixel = if request.wide { 8 } else { 4 };
         let row_bytes = width as usize * bytes_per_pixel;
-        let margin = self.reach_px(request)?;
+        // Texels of effects that stand for several pixels lie as in the whole picture.
+        let margin = self.reach_px(request)?.next_multiple_of(LARGEST_TEXEL_PX);
         let mut done = 0;
         for (rows, drawn_rows) in spans(height, margin) {
             let mut band = vec![0; rows.len() * row_bytes];

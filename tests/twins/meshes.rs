@@ -320,9 +320,10 @@ fn hull_outlines_of_solids_have_no_gaps() {
 fn tiles_are_the_picture() {
     let mut facets = cuboid(DVec3::new(1.0, 0.6, 0.8), askew(), DVec3::ZERO);
     facets.extend(cylinder(0.5, 0.9, 48, DMat3::from_rotation_x(1.1), DVec3::new(1.4, 0.5, 0.6)));
-    let style = r##"{"camera": {"zoom": 2.5}, "mapping": {"*": "t", "post_effects": ["ao", "lines"]}, "shaders": [{"name": "t", "shader": "toon", "properties":
+    let style = r##"{"camera": {"zoom": 2.5}, "mapping": {"*": "t", "post_effects": ["ao", "lines", "focus"]}, "shaders": [{"name": "t", "shader": "toon", "properties":
         {"base_color": "#88bbee", "hull_size": "9pt"}}, {"name": "ao", "shader": "ssaoPost", "properties": {"radius": 0.08}},
-        {"name": "lines", "shader": "outlinePost"}], "lights": [{"position": [1, 2, 3], "shadow": "soft"}]}"##;
+        {"name": "lines", "shader": "outlinePost"}, {"name": "focus", "shader": "dofPost", "properties": {"layers": [0.2, 0.4, 0.5, 0.9]}}],
+        "lights": [{"position": [1, 2, 3], "shadow": "soft"}]}"##;
     // Wider than one tile, and so large that the whole is drawn in tiles.
     let request = Request::new([2200, 2100], 2);
     assert!(Engine::is_tiled(&request));
