@@ -51,13 +51,13 @@ fn layer_color(layer: u32) -> vec3<f32> {
     return colors[layer];
 }
 
-// Which of five layers each pixel is in: in the layer's colour, as bright as its own.
+// Which of five layers each surface is in: in the layer's colour, as bright as its own. Lines keep theirs.
 @fragment
 fn show_layers(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let own = vec2<i32>(position.xy);
     let texel = textureLoad(geometry, own, 0);
     var result = textureLoad(color, own, 0);
-    if texel.w != 0u {
+    if texel.w != 0u && bitcast<f32>(texel.x) > 0.0 {
         let blur = diameters_of(texel);
         var layer = 2u;
         if blur.x > LEAST_PX { layer = select(1u, 0u, blur.x >= 0.999 * focus_params.most_px.x); }

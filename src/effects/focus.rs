@@ -26,10 +26,10 @@ const WIDEST: Length = Length::Points(135.0);
 /// Blurs of a smaller diameter change nothing that is seen.
 const LEAST_PX: f64 = 0.5;
 
-/// Side of the tiles in which the widest blur is looked for, in pixels.
+/// Side of the tiles in which the widest blur is looked for, in pixels: `TILE` of `shaders/effects/focus_gather.wgsl`.
 const TILE_PX: u32 = 16;
 
-/// Most taps of a pixel. Ours: of 8 to 128 the fewest whose noise is not seen in one sample.
+/// Most taps of a pixel (ours).
 const TAPS: u32 = 32;
 
 /// The parameters of `dofPost`. After [Prost2016 §4.3].
