@@ -9,6 +9,9 @@
 // lies within the radius counts, so that far things cast no halo; points outside the picture are left out. OCCLUSION_PUBLISHED
 // leaves the mends out, OCCLUSION_ROTATED turns the points by a matrix [Engel2009, throughout] instead of mirroring them: for measurements.
 //
+// OCCLUSION_COARSE: horizons are found for one pixel of a square of 2x2, and every pixel takes the mean of those around it that lie on
+// its plane; where none does, it finds its own (ours). OCCLUSION_FINE leaves that out, for measurements.
+//
 // OCCLUSION_PICKS: only what is picked is darkened; what is not still darkens others.
 
 struct OcclusionParams {
@@ -29,6 +32,9 @@ struct OcclusionParams {
     pick_bits: u32,
 }
 
+// One of so many pixels, across and down, finds horizons.
+const STRIDE: i32 = select(1, 2, OCCLUSION_COARSE && !OCCLUSION_FINE);
+
 const PI: f32 = 3.14159265;
 // Stands for occlusion where nothing is to be darkened.
 const NOT_PICKED: f32 = -1.0;
@@ -42,6 +48,8 @@ const POINT_BIAS_RADII: f32 = 0.02;
 // Denoising leaves out what lies off the pixel's plane by more than this, in radii, and what is turned by more than acos of this.
 const PLANE_RADII: f32 = 0.1;
 const LEAST_COSINE: f32 = 0.7;
+// With less weight than this in all there is nothing to take a mean of.
+const LEAST_WEIGHT: f32 = 0.05;
 
 fn is_surface(texel: vec4<u32>) -> bool {
     // A hull outline is a line, at a depth below 0: it neither receives nor casts.
@@ -96,13 +104,18 @@ fn thickness(texel: vec4<u32>, depth: f32, away: vec3<f32>) -> f32 {
     return THICKER * across * max(-dot(unpack_unit(texel.y), away), 0.0);
 }
 
+// The pixel whose horizons a texel of the estimate holds.
+fn pixel_of(coarse: vec2<i32>) -> vec2<i32> {
+    return min(STRIDE * coarse, vec2<i32>(view.tile_size_px) - 1);
+}
+
 fn horizons(own: vec2<i32>, texel: vec4<u32>) -> f32 {
     let g = unpack_geometry(texel);
     let p = position_at(own, g.depth);
     let to_viewer = select(normalize(-p), vec3<f32>(0.0, 0.0, 1.0), ORTHOGRAPHIC);
     let radius = occlusion_params.radius;
     let radius_px = min(radius / pixel_world(view, g.depth), occlusion_params.reach_px);
-    let noise = pixel_noise(own);
+    let noise = pixel_noise(own / STRIDE);
     var blocked = 0.0;
     var all = 0.0;
     for (var index = 0u; index < occlusion_params.slices; index++) {
@@ -267,7 +280,7 @@ fn hidden_points(own: vec2<i32>, texel: vec4<u32>) -> f32 {
 
 @fragment
 fn estimate_occlusion(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let own = vec2<i32>(position.xy);
+    let own = pixel_of(vec2<i32>(position.xy));
     let texel = textureLoad(geometry, own, 0);
     if !is_surface(texel) { return vec4<f32>(0.0); }
     if OCCLUSION_PICKS && (picks_of(texel.w) & occlusion_params.pick_bits) == 0u { return vec4<f32>(NOT_PICKED, 0.0, 0.0, 0.0); }
@@ -279,17 +292,18 @@ fn estimate_occlusion(@builtin(position) position: vec4<f32>) -> @location(0) ve
 fn denoised(own: vec2<i32>, texel: vec4<u32>) -> f32 {
     // Samples of a still even noise out already.
     let side = i32(max(round(f32(occlusion_params.blur) * view.footprint_px), 1.0));
-    let last = vec2<i32>(view.tile_size_px) - 1;
+    let texels = (vec2<i32>(view.tile_size_px) + STRIDE - 1) / STRIDE;
     let g = unpack_geometry(texel);
     let p = position_at(own, g.depth);
     var sum = 0.0;
     var weights = 0.0;
     for (var index = 0; index < side * side; index++) {
-        let at = own + vec2<i32>(index % side, index / side) - side / 2;
-        let inside = clamp(at, vec2<i32>(0), last);
-        let other = textureLoad(geometry, inside, 0);
-        if any(inside != at) || !is_surface(other) { continue; }
-        let estimate = textureLoad(occlusion, at, 0).x;
+        let coarse = (own + STRIDE / 2) / STRIDE + vec2<i32>(index % side, index / side) - side / 2;
+        let inside = clamp(coarse, vec2<i32>(0), texels - 1);
+        let at = pixel_of(inside);
+        let other = textureLoad(geometry, at, 0);
+        if any(inside != coarse) || !is_surface(other) { continue; }
+        let estimate = textureLoad(occlusion, coarse, 0).x;
         if OCCLUSION_PICKS && estimate == NOT_PICKED { continue; }
         var weight = 1.0;
         if OCCLUSION_HORIZONS {
@@ -301,12 +315,13 @@ fn denoised(own: vec2<i32>, texel: vec4<u32>) -> f32 {
         sum += weight * estimate;
         weights += weight;
     }
+    if STRIDE > 1 && weights < LEAST_WEIGHT { return horizons(own, texel); }
     return sum / max(weights, 1e-6);
 }
 
 // The share of light that is left to a surface.
 fn light_left(own: vec2<i32>, texel: vec4<u32>) -> f32 {
-    if OCCLUSION_PICKS && textureLoad(occlusion, own, 0).x == NOT_PICKED { return 1.0; }
+    if OCCLUSION_PICKS && (picks_of(texel.w) & occlusion_params.pick_bits) == 0u { return 1.0; }
     return max(1.0 - occlusion_params.intensity * denoised(own, texel), 0.0);
 }
 

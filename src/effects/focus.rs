@@ -279,7 +279,7 @@ impl PostEffect for Focus {
     fn features(&self) -> &'static [&'static str] {
         &["FOCUS_FIVE_LAYER", "FOCUS_SHOWN", PUBLISHED]
     }
-    fn features_used(&self, values: &Values) -> u32 {
+    fn features_used(&self, values: &Values, _context: &EffectContext<'_>) -> u32 {
         let method = if values.choice("method") == "five_layer" { FIVE_LAYER } else { 0 };
         method | if values.choice("show") == "layers" { SHOWS_LAYERS } else { 0 }
     }

@@ -48,6 +48,8 @@ pub struct EffectContext<'a> {
     pub world: &'a dyn Fn(Length) -> f64,
     /// Scene units of a pixel at the nearest depth that is drawn.
     pub least_pixel_world: f64,
+    /// Samples a pixel.
+    pub samples: u32,
     /// Where the scene lies.
     pub depths: Depths,
     /// The bit of the objects that [`PostEffect::picks`] picks; 0 where it picks nothing of the scene, or all.
@@ -136,7 +138,7 @@ pub trait PostEffect: Sync {
         &[]
     }
     /// Which of them such values use, one bit each.
-    fn features_used(&self, _values: &Values) -> u32 {
+    fn features_used(&self, _values: &Values, _context: &EffectContext<'_>) -> u32 {
         0
     }
 }

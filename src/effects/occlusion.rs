@@ -37,7 +37,7 @@ pub const PARAMS: &[Param] = &[
     Param::count("blur", 4)
         .range(1.0, 8.0)
         .unit("pixels")
-        .doc("Side of the square over which noise is evened out; 1 leaves it.")
+        .doc("Side of the square over which noise is evened out, twice as many in a frame of one sample; 1 leaves it.")
         .examples(&["1", "4", "8"]),
     Param::optional_selector(APPLIES_TO)
         .doc("What is darkened, all unless set; what is not still darkens what lies near it.")
@@ -129,18 +129,23 @@ impl PostEffect for AmbientOcclusion {
         values.optional_selector(APPLIES_TO)
     }
     fn reach_px(&self, values: &Values, context: &EffectContext<'_>) -> u32 {
-        farthest_px(values, context).ceil() as u32 + values.count("blur")
+        farthest_px(values, context).ceil() as u32 + 2 * values.count("blur") + 2
     }
-    fn passes(&self, _features: u32) -> &'static [EffectPass] {
-        const PASSES: &[EffectPass] = &[
-            EffectPass {
-                name: "occlusion",
-                entry: "estimate_occlusion",
-                target: PassTarget::Own { format: wgpu::TextureFormat::R32Float, pixels: [1, 1] },
-            },
-            EffectPass { name: "occlusion_applied", entry: "apply_occlusion", target: PassTarget::Picture },
-        ];
-        PASSES
+    fn passes(&self, features: u32) -> &'static [EffectPass] {
+        const fn passes(stride: u32) -> [EffectPass; 2] {
+            [
+                EffectPass {
+                    name: "occlusion",
+                    entry: "estimate_occlusion",
+                    target: PassTarget::Own { format: wgpu::TextureFormat::R32Float, pixels: [stride, stride] },
+                },
+                EffectPass { name: "occlusion_applied", entry: "apply_occlusion", target: PassTarget::Picture },
+            ]
+        }
+        const EVERY: &[EffectPass] = &passes(1);
+        const COARSE: &[EffectPass] = &passes(2);
+        let is_on = |feature| features & bit(feature) != 0;
+        if is_on(IS_COARSE) && !is_on(FINE) { COARSE } else { EVERY }
     }
     fn aov(&self) -> Option<EffectAov> {
         Some(EffectAov { name: "ao", entry: "occlusion_aov" })
@@ -155,22 +160,42 @@ impl PostEffect for AmbientOcclusion {
         (farthest_px(values, context) < LEAST_RADIUS_PX).then_some("its radius is less than 1.5 pixels anywhere")
     }
     fn features(&self) -> &'static [&'static str] {
-        &["OCCLUSION_HORIZONS", "OCCLUSION_THIN", PUBLISHED, ROTATED, "OCCLUSION_PICKS"]
+        FEATURES
     }
-    fn features_used(&self, values: &Values) -> u32 {
-        let of_method = match values.choice("method") {
-            "bitmask" => 0b11,
-            "gtao" => 0b01,
-            _ => 0,
+    fn features_used(&self, values: &Values, context: &EffectContext<'_>) -> u32 {
+        let method = values.choice("method");
+        let is_horizons = method != "hemisphere";
+        // A still of many samples sees each edge at many places; a single one is what a designer turns and waits for. Without a
+        // mean to take, a square would show.
+        let is_coarse = is_horizons && context.samples == 1 && values.count("blur") > 1;
+        let is_used = |feature: &&str| match *feature {
+            HORIZONS => is_horizons,
+            THIN => method == "bitmask",
+            PICKS => self.picks(values).is_some(),
+            IS_COARSE => is_coarse,
+            _ => false,
         };
-        of_method | u32::from(self.picks(values).is_some()) << 4
+        FEATURES.iter().filter(|feature| is_used(feature)).map(|feature| bit(feature)).sum()
     }
+}
+
+const FEATURES: &[&str] = &[HORIZONS, THIN, PUBLISHED, ROTATED, PICKS, IS_COARSE, FINE];
+const HORIZONS: &str = "OCCLUSION_HORIZONS";
+const THIN: &str = "OCCLUSION_THIN";
+const PICKS: &str = "OCCLUSION_PICKS";
+const IS_COARSE: &str = "OCCLUSION_COARSE";
+
+/// The bit of a feature among [`FEATURES`].
+fn bit(feature: &str) -> u32 {
+    FEATURES.iter().position(|known| *known == feature).map_or(0, |place| 1 << place)
 }
 
 /// The form of `hemisphere` as published, for measurements: no style has this feature.
 pub const PUBLISHED: &str = "OCCLUSION_PUBLISHED";
 /// `hemisphere` with its points turned instead of mirrored, for measurements: no style has this feature.
 pub const ROTATED: &str = "OCCLUSION_ROTATED";
+/// Horizons found for every pixel of a frame of one sample, for measurements: no style has this feature.
+pub const FINE: &str = "OCCLUSION_FINE";
 
 #[cfg(test)]
 mod tests {

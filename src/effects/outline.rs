@@ -159,7 +159,7 @@ impl PostEffect for Outline {
     fn features(&self) -> &'static [&'static str] {
         &["OUTLINE_CREASES", "OUTLINE_BOUNDARIES", "OUTLINE_SILHOUETTES", "OUTLINE_WORLD_WIDTHS"]
     }
-    fn features_used(&self, values: &Values) -> u32 {
+    fn features_used(&self, values: &Values, _context: &EffectContext<'_>) -> u32 {
         let in_points = |length| matches!(length, Length::Points(_)) || !is_drawn(length);
         let world = !WIDTHS.iter().all(|name| in_points(values.length(name)));
         let drawn = WIDTHS.map(|name| is_drawn(values.length(name)));
@@ -211,10 +211,11 @@ mod tests {
             world: &|_| 0.0,
             least_pixel_world: 1.0,
             depths,
+            samples: 1,
             looked_at: None,
             pick_bits: 0,
         };
         assert_eq!(Outline.changes_nothing(&values, &context), None);
-        assert_eq!(Outline.features_used(&values), 0b110);
+        assert_eq!(Outline.features_used(&values, &context), 0b110);
     }
 }

@@ -96,7 +96,7 @@ impl Exact {
         let materials = shades(&materials, &content.style, &drawn.used);
         let world = world(list.unwrap_or_default(), &camera, content, &materials, &optics);
         let (mut occlusions, mut lens, mut layers, mut lines) = (Vec::new(), None, None, Vec::new());
-        with_effects(content, &drawn, &camera, request.size[1], |effect, values, context| {
+        with_effects(content, &drawn, &camera, request, |effect, values, context| {
             let registered = EFFECTS[effect];
             if registered.changes_nothing(values, context).is_some() {
                 return;

@@ -93,6 +93,8 @@ impl EffectForm {
         EffectForm { effect: "ssaoPost", feature: effects::occlusion::PUBLISHED };
     /// `ssaoPost` with `hemisphere`, its points turned instead of mirrored.
     pub const OCCLUSION_ROTATED: EffectForm = EffectForm { effect: "ssaoPost", feature: effects::occlusion::ROTATED };
+    /// `ssaoPost` with horizons found for every pixel of a frame of one sample.
+    pub const OCCLUSION_FINE: EffectForm = EffectForm { effect: "ssaoPost", feature: effects::occlusion::FINE };
     /// `dofPost` with `five_layer` as published.
     pub const FOCUS_PUBLISHED: EffectForm = EffectForm { effect: "dofPost", feature: effects::focus::PUBLISHED };
 }
@@ -326,7 +328,7 @@ impl Engine {
         let camera = content.camera.turned(request.size, request.turn_deg.to_radians());
         let mut is_seen = [false; EFFECTS.len()];
         let mut left_out = Vec::new();
-        with_effects(content, drawn, &camera, request.size[1], |effect, values, context| {
+        with_effects(content, drawn, &camera, request, |effect, values, context| {
             is_seen[effect] = true;
             let reason = EFFECTS[effect].changes_nothing(values, context);
             left_out.extend(reason.map(|reason| Step::left_out(EFFECTS[effect].name(), reason)));
@@ -498,7 +500,7 @@ fn frame_input<T>(
 ) -> T {
     let camera = content.camera.turned(request.size, request.turn_deg.to_radians());
     let lighting = drawn.lighting.lighting(&camera);
-    let mut effects = effects(content, drawn, &camera, request.size[1]);
+    let mut effects = effects(content, drawn, &camera, request);
     for effect in &mut effects {
         let registered = EFFECTS[effect.effect];
         for (bit, feature) in registered.features().iter().enumerate() {
@@ -521,14 +523,14 @@ fn frame_input<T>(
 }
 
 /// The post effects of the content's style in the order of their stages, without those that change nothing.
-fn effects(content: &Content, drawn: &Drawn, camera: &Camera, height_px: u32) -> Vec<Effect> {
+fn effects(content: &Content, drawn: &Drawn, camera: &Camera, request: &Request) -> Vec<Effect> {
     let mut effects = Vec::new();
-    with_effects(content, drawn, camera, height_px, |effect, values, context| {
+    with_effects(content, drawn, camera, request, |effect, values, context| {
         let registered = EFFECTS[effect];
         if registered.changes_nothing(values, context).is_none() {
             effects.push(Effect {
                 effect,
-                features: registered.features_used(values),
+                features: registered.features_used(values, context),
                 params: registered.uniform(values, context),
                 reach_px: registered.reach_px(values, context),
             });
@@ -544,9 +546,10 @@ fn with_effects(
     content: &Content,
     drawn: &Drawn,
     camera: &Camera,
-    height_px: u32,
+    request: &Request,
     mut each: impl FnMut(usize, &Values, &EffectContext<'_>),
 ) {
+    let height_px = request.size[1];
     let pixel_world = |depth: f32| camera.pixel_view(height_px) * if camera.orthographic { 1.0 } else { depth };
     let bounds = content.scene.bounding_sphere();
     let middle = (-camera.view_from_world.transform_point3(bounds.center).z).max(camera.near);
@@ -558,6 +561,7 @@ fn with_effects(
         pixel_world: f64::from(pixel_world(middle).max(f32::MIN_POSITIVE)),
     };
     let context = EffectContext {
+        samples: request.samples.clamp(1, MAX_SAMPLES),
         depths,
         screen: &|length| drawn.lengths.screen(length, height_px),
         world: &|length| drawn.lengths.world(length),

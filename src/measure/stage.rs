@@ -58,9 +58,14 @@ impl Look {
         Look { name: Rc::from(format!("{} without effects", self.name)), style: Rc::new(style) }
     }
 
+    /// The reference renderer with a scene in it.
+    pub fn reference(&self, scene: &Scene) -> Exact {
+        Exact::new(scene.clone(), Style::clone(&self.style), None)
+    }
+
     /// What the reference renderer makes of a scene in it.
     pub fn exact(&self, scene: &Scene, request: Request) -> Rc<Truth> {
-        let exact = Exact::new(scene.clone(), Style::clone(&self.style), None);
+        let exact = self.reference(scene);
         Truth::new(move |go_on| exact.still(&request, &mut |_| go_on()).map_err(|_| MeasureError::Interrupted))
     }
 }

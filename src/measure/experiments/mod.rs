@@ -3,6 +3,7 @@
 mod dof;
 mod geometry;
 mod looks;
+mod orbit;
 mod outlines;
 mod shading;
 mod shadows;
@@ -21,6 +22,7 @@ pub const EXPERIMENTS: &[&dyn Experiment] = &[
     &shadows::Shadows,
     &ssao::Ssao,
     &dof::Dof,
+    &orbit::Orbit,
 ];
 
 /// The experiment of this name.

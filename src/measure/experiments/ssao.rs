@@ -83,7 +83,7 @@ struct Kind {
     form: Option<EffectForm>,
 }
 
-const KINDS: [Kind; 5] = [
+const KINDS: [Kind; 6] = [
     Kind {
         name: "hemisphere, published",
         method: "hemisphere",
@@ -99,6 +99,12 @@ const KINDS: [Kind; 5] = [
     Kind { name: "hemisphere", method: "hemisphere", samples: &[4, 8, 16, 32, 64, 256], form: None },
     Kind { name: "gtao", method: "gtao", samples: &[4, 8, 16, 32, 64], form: None },
     Kind { name: "bitmask", method: "bitmask", samples: &[4, 8, 16, 32, 64], form: None },
+    Kind {
+        name: "bitmask, every pixel",
+        method: "bitmask",
+        samples: &[4, 8, 16, 32, 64],
+        form: Some(EffectForm::OCCLUSION_FINE),
+    },
 ];
 
 /// The experiment.
@@ -205,6 +211,9 @@ impl Experiment for Ssao {
             ),
             "Hemisphere, published, is the form of the paper, with neither a check of the range nor points kept to the normal's side; \
              turned has Engel's rotations instead of mirrored points, with both mends."
+                .to_owned(),
+            "Bitmask and gtao look around one pixel of four where a frame has one sample; every pixel: around each, as in stills of \
+             more samples."
                 .to_owned(),
         ]
     }
