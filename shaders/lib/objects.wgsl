@@ -25,13 +25,24 @@ struct Material {
     // Linear RGB; alpha 1 replaces the object's own colour, 0 keeps it.
     base_color: vec4<f32>,
     // Linear RGB of the hull outline.
-    hull_color: vec4<f32>,
+    hull_color: vec3<f32>,
+    // Share of what is behind that it covers: below 1 it is drawn in layers.
+    opacity: f32,
     // Width of the hull outline: pixels plus scene units. 0 and 0: none.
     hull_px: f32,
     hull_world: f32,
     // Which object shader, by its place in the registry, and which of its parameter sets.
     shader: u32,
     index: u32,
+}
+
+// What of the objects a pass draws, DRAWN of each pipeline.
+const DRAWN_ALL: u32 = 0u;
+const DRAWN_OPAQUE: u32 = 1u;
+const DRAWN_LAYERS: u32 = 2u;
+
+fn is_layered(opacity: f32) -> bool {
+    return opacity < 1.0;
 }
 
 fn atom_at(index: u32) -> Atom {

@@ -30,6 +30,10 @@ fn atom_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) inst
     }
     let sign = vec2<f32>(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0;
     var out: AtomVarying;
+    if is_left_out(atom.material) {
+        out.position = vec4<f32>(2.0, 2.0, 0.5, 1.0);
+        return out;
+    }
     out.sphere = vec4<f32>(center, atom.radius);
     out.index = index;
     out.hull = hull;

@@ -43,6 +43,10 @@ fn mesh_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) insta
     }
     let vertex = mesh_vertex_at(vertex_index);
     let part = mesh_part_at(run.first_part + vertex.part);
+    if is_left_out(part.look & 0xffffu) {
+        out.position = vec4<f32>(2.0, 2.0, 0.5, 1.0);
+        return out;
+    }
     var position = to_view(view, mesh_to_world(part, vertex.position));
     var behind = 0.0;
     if SHELL {
@@ -67,11 +71,13 @@ fn mesh_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) insta
     return out;
 }
 
+// Depth along the view of a fragment.
+fn mesh_depth(position: vec4<f32>) -> f32 {
+    let parallel = (position.z - view.depth_from_t.y) / view.depth_from_t.z;
+    return select(view.depth_from_t.x / position.z, parallel, ORTHOGRAPHIC);
+}
+
 fn mesh_out(position: vec4<f32>, index: u32) -> VisibilityOut {
-    let t = select(
-        view.depth_from_t.x / position.z,
-        (position.z - view.depth_from_t.y) / view.depth_from_t.z,
-        ORTHOGRAPHIC,
-    );
+    let t = mesh_depth(position);
     return visibility_out(make_id(select(KIND_MESH, KIND_MESH_HULL, SHELL), index), t, t);
 }

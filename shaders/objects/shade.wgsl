@@ -33,7 +33,7 @@ fn shaded(s: Surface, id: u32) -> vec3<f32> {
     let material = material_of(id);
     var color = shade_object(s, material);
     if HULLS && (id >> 29u) > KIND_LAST_SURFACE {
-        color = materials[material].hull_color.rgb;
+        color = materials[material].hull_color;
     }
     return color;
 }

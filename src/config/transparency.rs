@@ -16,8 +16,7 @@ pub const PARAMS: &[Param] = &[
     Param::count("memory_mb", 512)
         .range(16.0, 65536.0)
         .unit("MB")
-        .not_drawn_yet()
-        .doc("Most memory that the fragments may take."),
+        .doc("Most memory that the fragments of what is transparent may take at once; a picture with more is drawn in bands, and is the same."),
 ];
 
 /// How fragments are put in order.

@@ -102,6 +102,10 @@ pub trait PostEffect: Sync {
     fn doc(&self) -> &'static str;
     /// Its parameters.
     fn params(&self) -> &'static [Param];
+    /// Whether it changes what is opaque alone, before layers are blended over it.
+    fn is_before_layers(&self) -> bool {
+        false
+    }
     /// WGSL that the entries of its passes need with such features, its own file last.
     fn wgsl(&self, features: u32) -> &'static [Wgsl];
     /// The WGSL struct of its parameters.

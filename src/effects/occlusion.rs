@@ -107,6 +107,9 @@ impl PostEffect for AmbientOcclusion {
         ];
         FILES
     }
+    fn is_before_layers(&self) -> bool {
+        true
+    }
     fn params_info(&self) -> StructInfo {
         OcclusionParams::info()
     }

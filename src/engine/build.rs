@@ -386,7 +386,8 @@ pub fn materials(
         let (hull_px, hull_world) = hull.map_or((0.0, 0.0), |hull| lengths.screen(hull.width, height_px));
         materials.common.push(Material {
             base_color,
-            hull_color: hull.map_or([0.0; 4], |hull| hull.color.extend(1.0).to_array()),
+            hull_color: hull.map_or([0.0; 3], |hull| hull.color.to_array()),
+            opacity: values.number("opacity") as f32,
             hull_px: hull_px as f32,
             hull_world: hull_world as f32,
             shader: shader_index as u32,

@@ -177,10 +177,11 @@ fn shades(materials: &Materials, style: &Style, used: &[super::build::MaterialUs
         };
         let [r, g, b, covers] = material.base_color;
         let width = (f64::from(material.hull_px), f64::from(material.hull_world));
-        let [hull_r, hull_g, hull_b, _] = material.hull_color;
+        let [hull_r, hull_g, hull_b] = material.hull_color;
         Material {
             base_color: (covers > 0.5).then(|| Vec3::new(r, g, b).as_dvec3()),
-            hull: (width.0 + width.1 > 0.0)
+            // What is seen through has no hull outline.
+            hull: (width.0 + width.1 > 0.0 && values.number("opacity") >= 1.0)
                 .then(|| HullLook { color: Vec3::new(hull_r, hull_g, hull_b).as_dvec3(), width }),
             opacity: values.number("opacity"),
             shade: shade.unwrap_or(Shade::Unlit),
@@ -223,6 +224,7 @@ fn world(list: DrawList, camera: &Camera, content: &Content, materials: &[Materi
     World::new(center, view_from_world, spheres.collect(), cylinders.collect(), meshes, |world| {
         reference::outlines(world, materials, optics)
     })
+    .with_see_through(materials.iter().map(|material| material.opacity < 1.0).collect())
 }
 
 /// Linear RGB of two words of half floats.

@@ -517,6 +517,7 @@ fn frame_input<T>(
         tile: None,
         shadows_drawn: false,
         samples: request.samples,
+        layer_bytes: u64::from(content.style.transparency.memory_mb) << 20,
         wide: request.wide,
         effects: &effects,
     })

@@ -27,6 +27,11 @@ impl Materials {
         px + world > 0.0
     }
 
+    /// Whether anything is transparent; what is invisible as well is left out with it.
+    fn has_layers(&self) -> bool {
+        self.common.iter().any(|material| material.opacity < 1.0)
+    }
+
     /// The widest hull outline.
     fn reach(&self) -> Reach {
         self.common.iter().fold(Reach::default(), |reach, material| Reach {
@@ -87,6 +92,8 @@ impl ObjectNeeds {
 pub struct Needs {
     /// Which kinds of objects there are.
     pub kinds: DrawnKinds,
+    /// Whether anything is transparent.
+    pub layered: bool,
     /// What shading reads; lights and output are filled in for each frame.
     pub key: ShadeKey,
 }
@@ -121,8 +128,9 @@ impl Needs {
             orthographic: false,
             encode: false,
             geometry: false,
+            layers: None,
         };
-        Needs { kinds: objects.kinds, key }
+        Needs { kinds: objects.kinds, key, layered: materials.has_layers() }
     }
 }
 

@@ -2,9 +2,7 @@
 
 use super::shadow::{MAX_SHADOWS, ShadowMaps};
 use super::{FrameInput, OUTPUT_8, OUTPUT_16, Plan, light_format};
-use super::{
-    post::COLOR_FORMAT, post::GEOMETRY_FORMAT, post::num_left, visibility::DEPTH_FORMAT, visibility::ID_FORMAT,
-};
+use super::{post::COLOR_FORMAT, post::GEOMETRY_FORMAT, visibility::DEPTH_FORMAT, visibility::ID_FORMAT};
 use crate::effects::{EFFECTS, PassTarget};
 use crate::gpu::Gpu;
 use crate::shading::SHADERS;
@@ -70,10 +68,11 @@ pub fn steps(gpu: &Gpu, plan: &Plan, input: &FrameInput<'_>, counts: [u64; 3]) -
 
     let shaders: Vec<&str> = plan.shade.shaders.iter().map(|needs| SHADERS[needs.shader].name()).collect();
     let lights = plural(u64::from(plan.shade.lights), "light");
-    let of_effects = match plan.effects.len() {
+    let chain = plan.chain();
+    let of_effects = match chain.pictures {
         0 => 0,
         count => {
-            (1 + num_left(&plan.effects).min(1)) as u64 * bytes_of(size, GEOMETRY_FORMAT)
+            (1 + chain.surfaces.min(1)) as u64 * bytes_of(size, GEOMETRY_FORMAT)
                 + count.min(2) as u64 * bytes_of(size, COLOR_FORMAT)
         }
     };
@@ -81,7 +80,7 @@ pub fn steps(gpu: &Gpu, plan: &Plan, input: &FrameInput<'_>, counts: [u64; 3]) -
     let reason = format!("{} in {lights}, once for each pixel that sees something{beside}", shaders.join(", "));
     let output = bytes_of(size, if input.wide { OUTPUT_16 } else { OUTPUT_8 });
     // The picture itself is written by shading where nothing comes after it.
-    let is_last = plan.direct && plan.effects.is_empty();
+    let is_last = plan.direct && chain.pictures == 0;
     steps.push(Step::drawn("shade", size, of_effects + if is_last { output } else { 0 }, reason));
 
     for (index, key) in plan.effects.iter().enumerate() {

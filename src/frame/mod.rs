@@ -6,6 +6,7 @@ mod aov;
 mod contents;
 mod explain;
 mod fullscreen;
+pub mod layers;
 mod lights;
 pub mod mesh;
 pub mod objects;
@@ -26,22 +27,23 @@ pub use aov::aov_module;
 pub use contents::Materials;
 use contents::{Contents, Needs};
 pub use explain::Step;
+use layers::{LayerTargets, Layers, LayersPlan};
 pub use lights::{Light, Lights, MAX_LIGHTS};
 use objects::{DrawList, Material};
 use occlusion::Reach;
 pub use post::{Effect, EffectKey, Finish, effect_module};
-use post::{EffectGroups, Post, PostTargets};
+use post::{EffectGroups, LayersAt, Post, PostTargets, turn};
 pub use resolve::resolve_module;
 pub use shade::{Output, ShadeKey, ShaderNeeds, shade_module};
 use shade::{Shade, ShadeInputs, ShadeTarget};
 pub use shadow::{MAX_SHADOWS, SHADOWLESS_RADII, ShadowFilter, ShadowQuality, ShadowView, Shadows};
 use shadow::{ShadowMaps, ShadowPlan};
 pub use targets::TargetBytes;
-use targets::Targets;
+use targets::{Chain, Targets};
 use view::sample_offsets_px;
 pub use view::{Tile, View};
-pub use visibility::VisibilityKey;
 use visibility::{DEPTH_FORMAT, Eye, ID_FORMAT, Visibility, VisibilityPass};
+pub use visibility::{Drawn, VisibilityKey};
 pub use visibility::{mesh_module, visibility_module};
 
 use crate::effects::EFFECTS;
@@ -102,6 +104,8 @@ pub struct FrameInput<'a> {
     pub wide: bool,
     /// Post effects, in the order in which they change the picture.
     pub effects: &'a [Effect],
+    /// Most bytes that the fragments of what is transparent take at once.
+    pub layer_bytes: u64,
 }
 
 impl FrameInput<'_> {
@@ -140,6 +144,7 @@ struct Plan {
     shade: ShadeKey,
     seen: VisibilityKey,
     effects: Vec<EffectKey>,
+    layers: Option<LayersPlan>,
 }
 
 impl Plan {
@@ -157,18 +162,45 @@ impl Plan {
             soft_taps: if shadowed { quality.soft_taps(samples) } else { 0 },
             shadow_filter: quality.filter,
             orthographic,
-            encode: direct && input.effects.is_empty(),
-            geometry: !input.effects.is_empty(),
+            encode: direct && input.effects.is_empty() && !needs.layered,
+            geometry: !input.effects.is_empty() || needs.layered,
             ..needs.key.clone()
         };
-        let seen = VisibilityKey { hulls: shade.hulls, orthographic, light: false };
-        let effects = post::keys(input.effects, orthographic, direct);
-        Plan { samples, direct, shadows, map_size, shade, seen, effects }
+        let drawn = if needs.layered { Drawn::Opaque } else { Drawn::All };
+        let seen = VisibilityKey { hulls: shade.hulls, orthographic, light: false, drawn };
+        let before = input.effects.iter().take_while(|effect| EFFECTS[effect.effect].is_before_layers()).count();
+        let effects = post::keys(input.effects, orthographic, direct, needs.layered.then_some(before));
+        let layers = needs.layered.then(|| {
+            let finish = match (before == input.effects.len(), direct) {
+                (false, _) => Finish::Next,
+                (true, false) => Finish::Add,
+                (true, true) => Finish::Encode,
+            };
+            LayersPlan::new(&shade, seen, finish, finish == Finish::Next, before)
+        });
+        Plan { samples, direct, shadows, map_size, shade, seen, effects, layers }
     }
 
-    /// How a light sees the scene. Outlines cast no shadows.
-    fn lit(shadow: &ShadowView) -> VisibilityKey {
-        VisibilityKey { hulls: false, orthographic: shadow.light.orthographic > 0.5, light: true }
+    /// How a light sees the scene. Outlines cast no shadows, nor does what is transparent.
+    fn lit(&self, shadow: &ShadowView) -> VisibilityKey {
+        VisibilityKey { hulls: false, orthographic: shadow.light.orthographic > 0.5, light: true, ..self.seen }
+    }
+
+    /// Where layers stand among the effects.
+    fn layers_at(&self) -> Option<LayersAt> {
+        self.layers.as_ref().map(|layers| LayersAt {
+            effects: layers.after_effects,
+            surfaces: layers.shade.layers.is_some_and(|(_, surfaces)| surfaces),
+        })
+    }
+
+    /// How often the picture of a sample is changed.
+    fn chain(&self) -> Chain {
+        let at = self.layers_at();
+        Chain {
+            pictures: self.effects.len() + usize::from(at.is_some()),
+            surfaces: post::num_left(&self.effects) + usize::from(at.is_some_and(|at| at.surfaces)),
+        }
     }
 }
 
@@ -186,6 +218,7 @@ pub struct Renderer {
     eye: Eye,
     light_eyes: Vec<Eye>,
     maps: Option<ShadowMaps>,
+    layers: Layers,
     shadow_quality: ShadowQuality,
     last_times: PassTimes,
 }
@@ -206,6 +239,7 @@ impl Renderer {
             eye: Eye::default(),
             light_eyes: Vec::new(),
             maps: None,
+            layers: Layers::default(),
             shadow_quality: ShadowQuality::default(),
             last_times: Vec::new(),
         }
@@ -251,6 +285,7 @@ impl Renderer {
         self.visibility = visibility;
         self.resolve = resolve;
         self.aov = aov::Aov::default();
+        self.layers.forget_pipelines();
         Ok(())
     }
 
@@ -267,12 +302,19 @@ impl Renderer {
 
     fn build(&mut self, needs: &Needs, plan: &Plan, wide: bool) -> Result<(), GpuError> {
         let gpu = &self.gpu;
-        for key in std::iter::once(plan.seen).chain(plan.shadows.views.iter().map(Plan::lit)) {
+        for key in std::iter::once(plan.seen).chain(plan.shadows.views.iter().map(|shadow| plan.lit(shadow))) {
             self.visibility.prepare(gpu, needs.kinds, key)?;
         }
         self.shade.prepare(gpu, &self.visibility, &plan.shade)?;
         for key in &plan.effects {
             self.post.prepare(gpu, &self.visibility, key)?;
+        }
+        if let Some(layers) = &plan.layers {
+            for key in [layers.count, layers.write] {
+                self.visibility.prepare(gpu, needs.kinds, key)?;
+            }
+            self.shade.prepare(gpu, &self.visibility, &layers.shade)?;
+            self.layers.prepare(gpu)?;
         }
         if !plan.direct {
             self.resolve.prepare(gpu, wide)?;
@@ -294,8 +336,23 @@ impl Renderer {
         self.draw_frame(input, timed, progress, None)
     }
 
-    /// The same; what effects find goes to `found`, where there is one sample.
+    /// The same; what effects find goes to `found`, where there is one sample. Drawn again where the pool of layers was too small.
     fn draw_frame(
+        &mut self,
+        input: &FrameInput<'_>,
+        timed: bool,
+        progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
+        mut found: Option<&mut Vec<(usize, wgpu::Texture)>>,
+    ) -> Result<(), GpuError> {
+        loop {
+            self.draw_once(input, timed, progress, found.as_deref_mut())?;
+            if self.layers.finish(&self.gpu, input.layer_bytes)? {
+                return Ok(());
+            }
+        }
+    }
+
+    fn draw_once(
         &mut self,
         input: &FrameInput<'_>,
         timed: bool,
@@ -311,9 +368,13 @@ impl Renderer {
         let plan = Plan::new(&gpu, &needs, input, self.shadow_quality);
         self.build(&needs, &plan, input.wide)?;
         let output_format = if input.wide { OUTPUT_16 } else { OUTPUT_8 };
-        self.targets.fit(&gpu, input.drawn_size(), output_format, !plan.direct, &plan.effects);
+        self.targets.fit(&gpu, input.drawn_size(), output_format, !plan.direct, plan.chain());
         let effect_bytes = self.post.fit(&gpu, input.drawn_size(), input.effects);
         self.fit_shadows(&plan);
+        match &plan.layers {
+            Some(_) => self.layers.begin(&gpu, input.drawn_size(), input.layer_bytes, plan.samples)?,
+            None => self.layers = Layers::default(),
+        }
 
         // Uniforms and bindings: a view for each sample, and the view of each light that casts shadows.
         let view = input.view();
@@ -321,13 +382,22 @@ impl Renderer {
         let views: Vec<View> =
             (0..).zip(sample_offsets_px(samples)).map(|(index, offset)| view.sample(index, samples, offset)).collect();
         let (objects, reach) = (&self.contents.objects, self.contents.reach());
-        let Some(scene) = self.visibility.bind(&gpu, &mut self.eye, objects, &materials, &views, reach)? else {
+        let all_opaque = plan.layers.is_none();
+        let outlined = (reach, all_opaque);
+        let Some(scene) = self.visibility.bind(&gpu, &mut self.eye, objects, &materials, &views, outlined)? else {
             return Ok(());
         };
         let mut lit_scenes = Vec::with_capacity(plan.shadows.views.len());
         for (eye, shadow) in self.light_eyes.iter_mut().zip(&plan.shadows.views) {
             let views = [shadow.light];
-            lit_scenes.extend(self.visibility.bind(&gpu, eye, objects, &materials, &views, Reach::default())?);
+            lit_scenes.extend(self.visibility.bind(
+                &gpu,
+                eye,
+                objects,
+                &materials,
+                &views,
+                (Reach::default(), all_opaque),
+            )?);
         }
         let [ids, depth, output] = self.targets.views()?;
         let light = self.targets.light_view();
@@ -350,7 +420,11 @@ impl Renderer {
             output: &background,
         });
         let effect_groups: Option<EffectGroups> = match &post {
-            Some(targets) => self.post.bind(&gpu, input.effects, &plan.effects, targets)?,
+            Some(targets) => self.post.bind(&gpu, input.effects, &plan.effects, targets, plan.layers_at())?,
+            None => None,
+        };
+        let layers_group = match &plan.layers {
+            Some(layers) => self.shade.bind(&gpu, &layers.shade, &inputs)?,
             None => None,
         };
         let mut timer = if timed { PassTimer::new(&gpu) } else { None };
@@ -360,7 +434,7 @@ impl Renderer {
         let layers = self.maps.iter().filter(|_| !input.shadows_drawn).flat_map(ShadowMaps::layers);
         for ((ids, depth), (shadow, lit_scene)) in layers.zip(plan.shadows.views.iter().zip(&lit_scenes)) {
             let pass =
-                VisibilityPass { name: "shadow", view: 0, key: Plan::lit(shadow), ids, depth, seen: &shadow.light };
+                VisibilityPass { name: "shadow", view: 0, key: plan.lit(shadow), ids, depth, seen: &shadow.light };
             self.visibility.draw(&mut encoder, lit_scene, objects, &pass, &mut timer);
         }
         let clear = if plan.shade.encode { clear_value(input.background) } else { wgpu::Color::TRANSPARENT };
@@ -378,8 +452,33 @@ impl Renderer {
             };
             self.visibility.draw(&mut encoder, &scene, objects, &pass, &mut timer);
             self.shade.draw(&mut encoder, &plan.shade, &scene, index, &shade_group, &target, &mut timer);
+            let at = plan.layers_at();
+            let num_before = at.map_or(plan.effects.len(), |at| at.effects);
             if let (Some(targets), Some(groups)) = (&post, &effect_groups) {
-                self.post.draw(&mut encoder, &plan.effects, &scene, index, groups, targets, &mut timer);
+                let before = (0..num_before, at);
+                self.post.draw(&mut encoder, &plan.effects, &scene, index, groups, targets, before, &mut timer);
+            }
+            if let (Some(targets), Some(layers), Some((group, _))) = (&post, &plan.layers, &layers_group) {
+                let is_last = num_before == plan.effects.len();
+                let (Some(color), Some(next), Some(opaque)) =
+                    (turn(targets.colors, num_before), turn(targets.colors, num_before + 1), targets.geometry.first())
+                else {
+                    continue;
+                };
+                let to = LayerTargets {
+                    color,
+                    geometry: opaque,
+                    depth: &depth,
+                    to: if is_last { targets.last } else { next },
+                    to_geometry: turn(targets.geometry, 1).filter(|_| !is_last),
+                    clears: index == 0 || !is_last,
+                };
+                let (with, on) = ((&self.visibility, &self.shade), (&scene, objects));
+                self.layers.draw(&gpu, &mut encoder, with, layers, on, &pass, group, &to, &mut timer)?;
+            }
+            if let (Some(targets), Some(groups)) = (&post, &effect_groups) {
+                let after = (num_before..plan.effects.len(), at);
+                self.post.draw(&mut encoder, &plan.effects, &scene, index, groups, targets, after, &mut timer);
             }
             if (index + 1) % SAMPLES_PER_SUBMISSION == 0 && index + 1 < samples as usize {
                 gpu.queue.submit([std::mem::replace(&mut encoder, frame_encoder(&gpu)).finish()]);
@@ -407,6 +506,7 @@ impl Renderer {
         };
         self.targets.note_shadow_bytes(self.maps.as_ref().map_or(0, ShadowMaps::bytes));
         self.targets.note_effect_bytes(effect_bytes);
+        self.targets.note_layer_bytes(self.layers.bytes());
         Ok(())
     }
 
@@ -441,7 +541,10 @@ impl Renderer {
         let (view, objects, reach) =
             (View::new(input.camera, input.size), &self.contents.objects, self.contents.reach());
         let scene = match self.contents.common() {
-            Some(materials) => self.visibility.bind(&gpu, &mut self.eye, objects, &materials, &[view], reach)?,
+            Some(materials) => {
+                let outlined = (reach, !self.contents.needs().layered);
+                self.visibility.bind(&gpu, &mut self.eye, objects, &materials, &[view], outlined)?
+            }
             None => None,
         };
         let Some(scene) = scene else {
@@ -551,6 +654,7 @@ pub fn gpu_structs() -> Vec<StructInfo> {
         Output::info(),
         ShadowView::info(),
         Shadows::info(),
+        layers::LayerBand::info(),
     ];
     for shader in SHADERS {
         all.push(shader.material_info());

@@ -59,7 +59,9 @@ gpu_struct! {
         /// Linear RGB; alpha 1 where it replaces the object's own colour.
         pub base_color: [f32; 4],
         /// Linear RGB of the hull outline.
-        pub hull_color: [f32; 4],
+        pub hull_color: [f32; 3],
+        /// Share of what is behind that it covers: below 1 it is drawn in layers.
+        pub opacity: f32,
         /// Width of the hull outline in pixels.
         pub hull_px: f32,
         /// Width of the hull outline in scene units, added.

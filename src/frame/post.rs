@@ -41,6 +41,44 @@ pub enum Finish {
     Encode,
 }
 
+impl Finish {
+    /// As WGSL has it.
+    pub fn number(self) -> u32 {
+        match self {
+            Finish::Next => 0,
+            Finish::Add => 1,
+            Finish::Encode => 2,
+        }
+    }
+}
+
+/// The target of what ends so.
+pub fn target_of(gpu: &Gpu, finish: Finish) -> wgpu::ColorTargetState {
+    match finish {
+        Finish::Next => COLOR_FORMAT.into(),
+        Finish::Add => super::adding_light(gpu),
+        Finish::Encode => super::OUTPUT_8.into(),
+    }
+}
+
+/// Where layers stand in a chain of effects.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LayersAt {
+    /// How many effects are before them.
+    pub effects: usize,
+    /// Whether they leave the nearest surface for what follows.
+    pub surfaces: bool,
+}
+
+/// How many pictures, and how many surfaces, were drawn before the effect of an index, after the first.
+fn hops(keys: &[EffectKey], index: usize, layers: Option<LayersAt>) -> [usize; 2] {
+    let layers = layers.filter(|layers| layers.effects <= index);
+    [
+        index + usize::from(layers.is_some()),
+        num_left(&keys[..index]) + usize::from(layers.is_some_and(|layers| layers.surfaces)),
+    ]
+}
+
 /// What the pipelines of an effect are built for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct EffectKey {
@@ -56,9 +94,9 @@ pub struct EffectKey {
     pub leaves_surfaces: bool,
 }
 
-/// The keys of a chain of effects.
-pub fn keys(effects: &[Effect], orthographic: bool, encode: bool) -> Vec<EffectKey> {
-    let last = effects.len().saturating_sub(1);
+/// The keys of a chain of effects, in which layers may come after so many.
+pub fn keys(effects: &[Effect], orthographic: bool, encode: bool, layers: Option<usize>) -> Vec<EffectKey> {
+    let last = if layers == Some(effects.len()) { effects.len() } else { effects.len().saturating_sub(1) };
     let finish = |index: usize| match (index == last, encode) {
         (false, _) => Finish::Next,
         (true, false) => Finish::Add,
@@ -176,10 +214,12 @@ impl Post {
         effects: &[Effect],
         keys: &[EffectKey],
         targets: &PostTargets<'_>,
+        layers: Option<LayersAt>,
     ) -> Result<Option<EffectGroups>, GpuError> {
         let mut groups = Vec::with_capacity(keys.len());
         for (index, ((slot, effect), key)) in self.slots.iter_mut().zip(effects).zip(keys).enumerate() {
-            let inputs = (turn(targets.colors, index), turn(targets.geometry, num_left(&keys[..index])));
+            let [colors, surfaces] = hops(keys, index, layers);
+            let inputs = (turn(targets.colors, colors), turn(targets.geometry, surfaces));
             let (Some(pipelines), (Some(color), Some(geometry))) = (self.pipelines.get(key), inputs) else {
                 return Ok(None);
             };
@@ -202,7 +242,7 @@ impl Post {
         Ok(Some(groups))
     }
 
-    /// Draws all passes of all effects for view `view_index`; the first view clears the last target.
+    /// Draws all passes of some of the effects for view `view_index`; the first view clears the last target.
     #[allow(clippy::too_many_arguments)]
     pub fn draw(
         &self,
@@ -212,17 +252,20 @@ impl Post {
         view_index: usize,
         groups: &EffectGroups,
         targets: &PostTargets<'_>,
+        (drawn, layers): (std::ops::Range<usize>, Option<LayersAt>),
         timer: &mut Option<PassTimer>,
     ) {
         let nothing = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
-        for (index, ((slot, key), groups)) in self.slots.iter().zip(keys).zip(groups).enumerate() {
+        let chain = self.slots.iter().zip(keys).zip(groups).enumerate();
+        for (index, ((slot, key), groups)) in chain.filter(|(index, _)| drawn.contains(index)) {
             let Some(pipelines) = self.pipelines.get(key) else { return };
+            let [colors, surfaces] = hops(keys, index, layers);
             let last = match key.finish {
-                Finish::Next => turn(targets.colors, index + 1).map(|color| (color, nothing)),
+                Finish::Next => turn(targets.colors, colors + 1).map(|color| (color, nothing)),
                 _ if view_index > 0 => Some((targets.last, wgpu::LoadOp::Load)),
                 _ => Some((targets.last, nothing)),
             };
-            let surfaces = turn(targets.geometry, num_left(&keys[..=index])).filter(|_| key.leaves_surfaces);
+            let surfaces = turn(targets.geometry, surfaces + 1).filter(|_| key.leaves_surfaces);
             let last = last.into_iter().chain(surfaces.map(|surfaces| (surfaces, nothing))).collect();
             let onto = slot.own.iter().map(|target| vec![(&target.view, nothing)]).chain([last]);
             for (((pass, (_, pipeline)), group), onto) in
@@ -274,7 +317,7 @@ impl Post {
 }
 
 /// Of textures that are read and drawn to in turn the one at a place of the chain.
-fn turn(textures: &[wgpu::TextureView], index: usize) -> Option<&wgpu::TextureView> {
+pub fn turn(textures: &[wgpu::TextureView], index: usize) -> Option<&wgpu::TextureView> {
     textures.get(index % textures.len().max(1))
 }
 
@@ -292,11 +335,9 @@ fn build(gpu: &Gpu, visibility: &Visibility, key: &EffectKey) -> Result<Pipeline
         let mut types = vec![fullscreen::UNIFORM, fullscreen::UNIFORM, uint, float, uint];
         types.extend(passes[..index].iter().map(|pass| if is_uint(pass) { uint } else { float }));
         let layout = fullscreen::layout(gpu, pass.name, &types);
-        let target: wgpu::ColorTargetState = match (pass.target, key.finish) {
-            (PassTarget::Own { format, .. }, _) => format.into(),
-            (PassTarget::Picture, Finish::Next) => COLOR_FORMAT.into(),
-            (PassTarget::Picture, Finish::Add) => super::adding_light(gpu),
-            (PassTarget::Picture, Finish::Encode) => super::OUTPUT_8.into(),
+        let target: wgpu::ColorTargetState = match pass.target {
+            PassTarget::Own { format, .. } => format.into(),
+            PassTarget::Picture => target_of(gpu, key.finish),
         };
         let is_last = pass.target == PassTarget::Picture;
         let as_surfaces = EFFECTS[key.effect].surfaces_entry().filter(|_| is_last && key.leaves_surfaces);
@@ -323,11 +364,7 @@ pub fn effect_module(key: &EffectKey) -> Module {
         wgsl!("lib/geometry.wgsl"),
         wgsl!("lib/encode.wgsl"),
     ]);
-    let finish = match key.finish {
-        Finish::Next => 0,
-        Finish::Add => 1,
-        Finish::Encode => 2,
-    };
+    let finish = key.finish.number();
     let mut bindings = format!(
         "const ORTHOGRAPHIC: bool = {};\nconst FINISH: u32 = {finish}u;\nconst LEAVES_SURFACES: bool = {};\n\
          @group(0) @binding(0) var<uniform> view: View;\n\

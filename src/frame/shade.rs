@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::fmt::Write as _;
 
+use super::layers::{self, LayerTargets};
 use super::lights::Lights;
-use super::post;
+use super::post::{self, Finish};
 use super::shadow::{ShadowFilter, ShadowMaps, Shadows};
 use super::visibility::{DEPTH_FORMAT, SceneBindings, Visibility};
 use crate::gpu::{Bound, Gpu, GpuError, KeptBindGroup, KeptBuffer, Module, PassTimer, Wgsl};
@@ -58,6 +59,9 @@ pub struct ShadeKey {
     pub encode: bool,
     /// Light that is not weighted yet and the surface beside it, for post effects.
     pub geometry: bool,
+    /// Layers of what is transparent instead of the nearest surface: where the blended picture goes, and whether its nearest
+    /// surface goes beside it.
+    pub layers: Option<(Finish, bool)>,
 }
 
 /// What a style needs of one shader.
@@ -77,6 +81,7 @@ const FIRST_SHADER_BINDING: u32 = 5;
 struct ShadePipeline {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::RenderPipeline,
+    group: KeptBindGroup,
     /// When it was used last, in uses of any pipeline.
     last_use: u64,
 }
@@ -115,7 +120,8 @@ pub struct Shade {
     lights: KeptBuffer,
     output: KeptBuffer,
     shadows: KeptBuffer,
-    group: KeptBindGroup,
+    /// What blending layers binds.
+    layers_layout: Option<wgpu::BindGroupLayout>,
 }
 
 /// Pipelines that are kept, the ones used last. Ours: a designer goes back and forth between a few states, and each new
@@ -131,7 +137,7 @@ impl Default for Shade {
             lights: KeptBuffer::uniform("lights"),
             output: KeptBuffer::uniform("output"),
             shadows: KeptBuffer::uniform("shadows"),
-            group: KeptBindGroup::default(),
+            layers_layout: None,
         }
     }
 }
@@ -148,6 +154,9 @@ impl Shade {
                     SHADERS[shader].resources().iter().map(|resource| shading::upload(gpu, resource)).collect();
                 entry.insert(uploaded?);
             }
+        }
+        if key.layers.is_some() {
+            self.layers_layout.get_or_insert_with(|| layers::blend_layout(gpu));
         }
         self.uses += 1;
         if let Some(pipeline) = self.pipelines.get_mut(key) {
@@ -180,12 +189,18 @@ impl Shade {
     fn build(&self, gpu: &Gpu, visibility: &Visibility, key: &ShadeKey) -> Result<ShadePipeline, GpuError> {
         let module = shade_module(key).compile(gpu, "shade")?;
         let layout = self.layout(gpu, key);
+        let layers = self.layers_layout.as_ref().filter(|_| key.layers.is_some());
+        let groups: Vec<_> = [&visibility.layout, &layout].into_iter().chain(layers).map(Some).collect();
         let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("shade"),
-            bind_group_layouts: &[Some(&visibility.layout), Some(&layout)],
+            bind_group_layouts: &groups,
             immediate_size: 0,
         });
-        let (entry_point, targets) = if key.geometry {
+        let (entry_point, targets) = if let Some((finish, surfaces)) = key.layers {
+            let surface = surfaces.then(|| Some(post::GEOMETRY_FORMAT.into()));
+            let entry = if surfaces { "blend_layers_geometry" } else { "blend_layers" };
+            (entry, std::iter::once(Some(post::target_of(gpu, finish))).chain(surface).collect())
+        } else if key.geometry {
             let formats = [post::COLOR_FORMAT, post::GEOMETRY_FORMAT];
             ("shade_geometry_fragment", formats.map(|format| Some(format.into())).to_vec())
         } else if key.encode {
@@ -198,13 +213,13 @@ impl Shade {
             layout: Some(&pipeline_layout),
             vertex: wgpu::VertexState {
                 module: &module,
-                entry_point: Some("shade_vertex"),
+                entry_point: Some(if key.layers.is_some() { "layers_vertex" } else { "shade_vertex" }),
                 compilation_options: Default::default(),
                 buffers: &[],
             },
             primitive: Default::default(),
             // The pass lies at depth 0, behind all that is drawn: it passes only where something is in front of it.
-            depth_stencil: Some(wgpu::DepthStencilState {
+            depth_stencil: key.layers.is_none().then(|| wgpu::DepthStencilState {
                 format: DEPTH_FORMAT,
                 depth_write_enabled: Some(false),
                 depth_compare: Some(wgpu::CompareFunction::Less),
@@ -221,7 +236,7 @@ impl Shade {
             multiview_mask: None,
             cache: None,
         })?;
-        Ok(ShadePipeline { layout, pipeline, last_use: self.uses })
+        Ok(ShadePipeline { layout, pipeline, group: KeptBindGroup::default(), last_use: self.uses })
     }
 
     fn layout(&self, gpu: &Gpu, key: &ShadeKey) -> wgpu::BindGroupLayout {
@@ -278,7 +293,7 @@ impl Shade {
     ) -> Result<Option<(wgpu::BindGroup, wgpu::Buffer)>, GpuError> {
         let output = self.output.set(gpu, bytemuck::bytes_of(inputs.output), 0)?;
         let lights = self.lights.set(gpu, bytemuck::bytes_of(inputs.lights), 0)?;
-        let Some(pipeline) = self.pipelines.get(key) else { return Ok(None) };
+        let Some(pipeline) = self.pipelines.get_mut(key) else { return Ok(None) };
         let mut bound = vec![
             (0, Bound::Buffer(lights)),
             (1, Bound::Buffer(output.clone())),
@@ -302,7 +317,7 @@ impl Shade {
                 binding += 1;
             }
         }
-        Ok(Some((self.group.get(gpu, "shade", &pipeline.layout, bound), output)))
+        Ok(Some((pipeline.group.get(gpu, "shade", &pipeline.layout, bound), output)))
     }
 
     /// Shades the pixels of view `view_index` that see something. The first view clears the target to `clear`; where post
@@ -347,6 +362,55 @@ impl Shade {
         pass.set_pipeline(&pipeline.pipeline);
         pass.set_bind_group(0, &scene.group, &[SceneBindings::offset(view_index)]);
         pass.set_bind_group(1, inputs, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+impl Shade {
+    /// What blending layers binds; none where no pipeline does.
+    pub fn layers_layout(&self) -> Option<&wgpu::BindGroupLayout> {
+        self.layers_layout.as_ref()
+    }
+
+    /// Blends the layers of some rows of the picture of view `view_index`. The groups are those of the scene, of the shading, and of
+    /// the layers.
+    #[allow(clippy::too_many_arguments)]
+    pub fn draw_layers(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        key: &ShadeKey,
+        [scene, inputs, layers]: [&wgpu::BindGroup; 3],
+        view_index: usize,
+        to: &LayerTargets<'_>,
+        clears: bool,
+        rows: std::ops::Range<u32>,
+        timer: &mut Option<PassTimer>,
+    ) {
+        let Some(pipeline) = self.pipelines.get(key) else { return };
+        let load = if clears { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) } else { wgpu::LoadOp::Load };
+        let attachment = |view| {
+            Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+            })
+        };
+        let attachments: Vec<_> = [to.to].into_iter().chain(to.to_geometry).map(attachment).collect();
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("blend layers"),
+            color_attachments: &attachments,
+            depth_stencil_attachment: None,
+            timestamp_writes: timer.as_mut().and_then(|timer| timer.pass("layers_blended")),
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        pass.set_pipeline(&pipeline.pipeline);
+        pass.set_bind_group(0, scene, &[SceneBindings::offset(view_index)]);
+        pass.set_bind_group(1, inputs, &[]);
+        pass.set_bind_group(2, layers, &[]);
+        let width = to.to.texture().width();
+        pass.set_scissor_rect(0, rows.start, width, rows.end - rows.start);
         pass.draw(0..3, 0..1);
     }
 }
@@ -431,7 +495,12 @@ pub fn shade_module(key: &ShadeKey) -> Module {
     bindings.push_str(&material_function(key));
     module.add_generated("shade bindings", bindings);
     module.add(wgsl!("objects/shade.wgsl"));
-    if key.geometry {
+    if let Some((finish, _)) = key.layers {
+        module.add(wgsl!("lib/geometry.wgsl"));
+        module.add_generated("layers options", format!("const FINISH: u32 = {}u;", finish.number()));
+        module.add(wgsl!("lib/layers.wgsl"));
+        module.add(wgsl!("layers/blend.wgsl"));
+    } else if key.geometry {
         module.add(wgsl!("lib/geometry.wgsl"));
         module.add(wgsl!("objects/shade_geometry.wgsl"));
     }

@@ -1,6 +1,6 @@
 //! The pictures that passes draw to, kept from frame to frame while size and need stay.
 
-use super::post::{COLOR_FORMAT, EffectKey, GEOMETRY_FORMAT, num_left};
+use super::post::{COLOR_FORMAT, GEOMETRY_FORMAT};
 use super::{DEPTH_FORMAT, ID_FORMAT, light_format};
 use crate::gpu::{Gpu, GpuError};
 
@@ -36,6 +36,15 @@ struct Shaded {
     colors: Vec<Target>,
 }
 
+/// How often a picture of one sample is changed after it was shaded.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Chain {
+    /// Pictures that are changed: by post effects, and by layers.
+    pub pictures: usize,
+    /// Which of them leave surfaces of their own.
+    pub surfaces: usize,
+}
+
 struct Set {
     size: [u32; 2],
     ids: Target,
@@ -51,12 +60,13 @@ pub struct Targets {
     set: Option<Set>,
     shadow_bytes: u64,
     effect_bytes: u64,
+    layer_bytes: u64,
 }
 
 impl Targets {
-    /// Makes the targets fit; what fits already stays. `light` asks for the target in which samples add up, `effects` for
-    /// what such post effects read.
-    pub fn fit(&mut self, gpu: &Gpu, size: [u32; 2], output: wgpu::TextureFormat, light: bool, effects: &[EffectKey]) {
+    /// Makes the targets fit; what fits already stays. `light` asks for the target in which samples add up, `chain` for
+    /// what post effects and layers read.
+    pub fn fit(&mut self, gpu: &Gpu, size: [u32; 2], output: wgpu::TextureFormat, light: bool, chain: Chain) {
         let former = self.set.take().filter(|set| set.size == size);
         let make = |label, format| Target::new(gpu, label, size, format);
         let (ids, depth, former_output, former_light, former_shaded) = match former {
@@ -66,9 +76,9 @@ impl Targets {
         let output =
             former_output.filter(|target| target.texture.format() == output).unwrap_or_else(|| make("output", output));
         let light = light.then(|| former_light.unwrap_or_else(|| make("light", light_format(gpu))));
-        let shaded = (!effects.is_empty()).then(|| {
+        let shaded = (chain.pictures > 0).then(|| {
             let mut shaded = former_shaded.unwrap_or_else(|| Shaded { geometry: Vec::new(), colors: Vec::new() });
-            let counts = [effects.len().min(2), 1 + num_left(effects).min(1)];
+            let counts = [chain.pictures.min(2), 1 + chain.surfaces.min(1)];
             shaded.colors.truncate(counts[0]);
             shaded.geometry.truncate(counts[1]);
             while shaded.colors.len() < counts[0] {
@@ -141,6 +151,11 @@ impl Targets {
         self.effect_bytes = bytes;
     }
 
+    /// Notes what the frame's layers take.
+    pub fn note_layer_bytes(&mut self, bytes: u64) {
+        self.layer_bytes = bytes;
+    }
+
     /// Bytes of each target.
     pub fn bytes(&self) -> TargetBytes {
         let Some(set) = &self.set else { return Vec::new() };
@@ -150,6 +165,9 @@ impl Targets {
             all.push(("geometry", shaded.geometry.iter().map(Target::bytes).sum()));
             all.push(("color", shaded.colors.iter().map(Target::bytes).sum()));
             all.push(("effects", self.effect_bytes));
+        }
+        if self.layer_bytes > 0 {
+            all.push(("layers", self.layer_bytes));
         }
         if self.shadow_bytes > 0 {
             all.push(("shadow_maps", self.shadow_bytes));

@@ -5,6 +5,7 @@
 
 use std::collections::BTreeMap;
 
+use super::layers;
 use super::mesh::MeshDraw;
 use super::objects::ObjectBuffers;
 use super::occlusion::{self, Reach};
@@ -31,6 +32,38 @@ pub struct VisibilityKey {
     pub orthographic: bool,
     /// Whether it is a light that looks, into a shadow map.
     pub light: bool,
+    /// Which objects are drawn, and what becomes of their fragments.
+    pub drawn: Drawn,
+}
+
+/// What a visibility pass is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Drawn {
+    /// The nearest surface of all objects.
+    All,
+    /// The nearest surface of what is opaque.
+    Opaque,
+    /// All surfaces of what is not, counted.
+    CountedLayers,
+    /// The same, written down.
+    WrittenLayers,
+}
+
+impl Drawn {
+    /// Whether it is for layers.
+    pub fn is_layers(self) -> bool {
+        matches!(self, Drawn::CountedLayers | Drawn::WrittenLayers)
+    }
+
+    /// What its WGSL needs to know.
+    fn constants(self) -> String {
+        let name = match self {
+            Drawn::All => "ALL",
+            Drawn::Opaque => "OPAQUE",
+            _ => "LAYERS",
+        };
+        format!("const DRAWN: u32 = DRAWN_{name};\nconst WRITES: bool = {};\n", self == Drawn::WrittenLayers)
+    }
 }
 
 /// Which kinds of objects are drawn at all.
@@ -59,6 +92,8 @@ enum Kind {
 pub struct Visibility {
     /// Group 0 of every pass that reads the scene: view, objects, materials, orders.
     pub layout: wgpu::BindGroupLayout,
+    /// Group 1 of the passes that count and write layers.
+    pub layers_layout: wgpu::BindGroupLayout,
     /// Whether the device numbers the triangles of a draw.
     numbered: bool,
     pipelines: BTreeMap<(Kind, VisibilityKey), wgpu::RenderPipeline>,
@@ -95,7 +130,7 @@ pub struct Eye {
     connector_order: KeptBuffer,
     group: KeptBindGroup,
     /// The view, objects and outlines that the orders are for.
-    ordered_for: Option<(Vec<u8>, u64, Reach)>,
+    ordered_for: Option<(Vec<u8>, u64, Reach, bool)>,
     num_drawn: [u32; 2],
 }
 
@@ -169,10 +204,12 @@ impl Visibility {
                 objects(10),
             ],
         });
-        Visibility { layout, numbered: gpu.numbers_triangles(), pipelines: BTreeMap::new() }
+        let layers_layout = layers::raster_layout(gpu);
+        Visibility { layout, layers_layout, numbered: gpu.numbers_triangles(), pipelines: BTreeMap::new() }
     }
 
-    /// Binds objects, materials and the views of one eye; `reach` is what outlines add to the objects there. The order
+    /// Binds objects, materials and the views of one eye; `reach` is what outlines add to the objects there, and
+    /// beside it whether all materials are opaque. The order
     /// of the objects is found again only where the first view, the objects or the outlines are others.
     ///
     /// # Errors
@@ -184,7 +221,7 @@ impl Visibility {
         objects: &ObjectBuffers,
         materials: &wgpu::Buffer,
         views: &[View],
-        reach: Reach,
+        (reach, all_opaque): (Reach, bool),
     ) -> Result<Option<SceneBindings>, GpuError> {
         let Some([atoms, connectors, meshes @ ..]) = objects.views() else { return Ok(None) };
         let mut bytes = vec![0u8; views.len() * VIEW_STRIDE as usize];
@@ -192,10 +229,11 @@ impl Visibility {
             slot[..size_of::<View>()].copy_from_slice(bytemuck::bytes_of(view));
         }
         let view_buffer = eye.views.set(gpu, &bytes, VIEW_STRIDE as usize)?;
-        let order_key = (bytemuck::bytes_of(&views[0]).to_vec(), objects.generation, reach);
+        // What is seen through hides nothing.
+        let cull = all_opaque && gpu.info.device_type == wgpu::DeviceType::Cpu;
+        let order_key = (bytemuck::bytes_of(&views[0]).to_vec(), objects.generation, reach, cull);
         if eye.ordered_for.as_ref() != Some(&order_key) {
             eye.ordered_for = None;
-            let cull = gpu.info.device_type == wgpu::DeviceType::Cpu;
             let (atom_order, connector_order) =
                 occlusion::orders(&views[0], &objects.atom_balls, &objects.connector_balls, reach, cull);
             eye.atom_order.set(gpu, bytemuck::cast_slice(&atom_order), 4)?;
@@ -245,7 +283,12 @@ impl Visibility {
     /// # Errors
     /// [`GpuError::Driver`] where a shader does not compile.
     pub fn rebuilt(&self, gpu: &Gpu) -> Result<Visibility, GpuError> {
-        let mut fresh = Visibility { layout: self.layout.clone(), numbered: self.numbered, pipelines: BTreeMap::new() };
+        let mut fresh = Visibility {
+            layout: self.layout.clone(),
+            layers_layout: self.layers_layout.clone(),
+            numbered: self.numbered,
+            pipelines: BTreeMap::new(),
+        };
         for &(kind, key) in self.pipelines.keys() {
             let pipeline = fresh.build(gpu, kind, key)?;
             fresh.pipelines.insert((kind, key), pipeline);
@@ -263,10 +306,11 @@ impl Visibility {
         };
         let module = module.compile(gpu, "visibility")?;
         let (vertex, fragment) = match kind {
-            Kind::Atom => ("atom_vertex", "atom_fragment"),
-            Kind::Connector => ("connector_vertex", "connector_fragment"),
-            Kind::Mesh | Kind::Shell { .. } => ("mesh_vertex", "mesh_fragment"),
+            Kind::Atom => ("atom_vertex", ["atom_fragment", "atom_layers"]),
+            Kind::Connector => ("connector_vertex", ["connector_fragment", "connector_layers"]),
+            Kind::Mesh | Kind::Shell { .. } => ("mesh_vertex", ["mesh_fragment", "mesh_layers"]),
         };
+        let fragment = fragment[usize::from(key.drawn.is_layers())];
         let impostor = wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() };
         let primitive = match kind {
             Kind::Atom | Kind::Connector => impostor,
@@ -278,11 +322,14 @@ impl Visibility {
                 ..Default::default()
             },
         };
+        let layers = key.drawn.is_layers().then_some(&self.layers_layout);
+        let groups: Vec<_> = [&self.layout].into_iter().chain(layers).map(Some).collect();
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("visibility"),
-            bind_group_layouts: &[Some(&self.layout)],
+            bind_group_layouts: &groups,
             immediate_size: 0,
         });
+        let target = [Some(if key.light { LIGHT_FORMAT } else { ID_FORMAT }.into())];
         gpu.render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("visibility"),
             layout: Some(&layout),
@@ -295,8 +342,12 @@ impl Visibility {
             primitive,
             depth_stencil: Some(wgpu::DepthStencilState {
                 format: DEPTH_FORMAT,
-                depth_write_enabled: Some(true),
-                depth_compare: Some(wgpu::CompareFunction::Greater),
+                depth_write_enabled: Some(!key.drawn.is_layers()),
+                // Layers test depths themselves: what they write does not wait for the test.
+                depth_compare: Some(match key.drawn.is_layers() {
+                    true => wgpu::CompareFunction::Always,
+                    false => wgpu::CompareFunction::Greater,
+                }),
                 stencil: Default::default(),
                 bias: Default::default(),
             }),
@@ -305,7 +356,7 @@ impl Visibility {
                 module: &module,
                 entry_point: Some(fragment),
                 compilation_options: Default::default(),
-                targets: &[Some(if key.light { LIGHT_FORMAT } else { ID_FORMAT }.into())],
+                targets: if key.drawn.is_layers() { &[] } else { &target },
             }),
             multiview_mask: None,
             cache: None,
@@ -341,6 +392,44 @@ impl Visibility {
             occlusion_query_set: None,
             multiview_mask: None,
         });
+        self.draw_objects(&mut pass, bindings, objects, to);
+    }
+
+    /// Counts or writes the layers of all objects within some rows of the picture, in front of what is opaque.
+    pub fn draw_layers(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        bindings: &SceneBindings,
+        objects: &ObjectBuffers,
+        to: &VisibilityPass<'_>,
+        layers: &wgpu::BindGroup,
+        rows: std::ops::Range<u32>,
+        timer: &mut Option<PassTimer>,
+    ) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some(to.name),
+            color_attachments: &[],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: to.depth,
+                depth_ops: None,
+                stencil_ops: None,
+            }),
+            timestamp_writes: timer.as_mut().and_then(|timer| timer.pass(to.name)),
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        pass.set_bind_group(1, layers, &[]);
+        pass.set_scissor_rect(0, rows.start, to.seen.tile_size_px[0] as u32, rows.end - rows.start);
+        self.draw_objects(&mut pass, bindings, objects, to);
+    }
+
+    fn draw_objects(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        bindings: &SceneBindings,
+        objects: &ObjectBuffers,
+        to: &VisibilityPass<'_>,
+    ) {
         pass.set_bind_group(0, &bindings.group, &[SceneBindings::offset(to.view)]);
         // The viewport is that of the whole picture, so that triangles fall on the same pixels in every tile.
         let ([x, y], [width, height]) = (to.seen.tile_origin_px, to.seen.size_px);
@@ -390,8 +479,13 @@ pub fn mesh_module(key: VisibilityKey, shell: bool, numbered: bool) -> Module {
     module.add(wgsl!("lib/texels.wgsl"));
     module.add(wgsl!("lib/objects.wgsl"));
     module.add(wgsl!("lib/mesh.wgsl"));
+    module.add(wgsl!("lib/drawn.wgsl"));
     module.add(if key.light { wgsl!("lib/seen_light_mesh.wgsl") } else { wgsl!("lib/seen_camera_mesh.wgsl") });
     module.add(wgsl!("objects/mesh.wgsl"));
+    if key.drawn.is_layers() {
+        module.add(wgsl!("lib/layers.wgsl"));
+        module.add(wgsl!("layers/store.wgsl"));
+    }
     let (parameter, index) = match numbered {
         true => (", @builtin(primitive_index) triangle: u32", "in.id + triangle"),
         false => ("", "in.id"),
@@ -399,12 +493,20 @@ pub fn mesh_module(key: VisibilityKey, shell: bool, numbered: bool) -> Module {
     module.add_generated(
         "mesh options",
         format!(
-            "const SHELL: bool = {shell};\nconst NUMBERED: bool = {numbered};\nconst ORTHOGRAPHIC: bool = {};\n\
+            "{}const SHELL: bool = {shell};\nconst NUMBERED: bool = {numbered};\nconst ORTHOGRAPHIC: bool = {};\n\
              @fragment\nfn mesh_fragment(in: MeshVarying{parameter}) -> VisibilityOut {{\n    \
              return mesh_out(in.position, {index});\n}}",
+            key.drawn.constants(),
             key.orthographic
         ),
     );
+    if key.drawn.is_layers() {
+        let text = format!(
+            "@fragment\nfn mesh_layers(in: MeshVarying{parameter}) {{\n    \
+             add_layer(in.position.xy, make_id(KIND_MESH, {index}), mesh_depth(in.position));\n}}"
+        );
+        module.add_generated("mesh layers", text);
+    }
     module
 }
 
@@ -418,12 +520,19 @@ pub fn visibility_module(atoms: bool, key: VisibilityKey) -> Module {
         wgsl!("lib/intersect.wgsl"),
         wgsl!("lib/hull.wgsl"),
         wgsl!("lib/billboard.wgsl"),
+        wgsl!("lib/drawn.wgsl"),
     ]);
+    let constants = key.drawn.constants();
     module.add_generated(
         "visibility options",
-        format!("const HULL: bool = {};\nconst ORTHOGRAPHIC: bool = {};", key.hulls, key.orthographic),
+        format!("{constants}const HULL: bool = {};\nconst ORTHOGRAPHIC: bool = {};", key.hulls, key.orthographic),
     );
     module.add(if key.light { wgsl!("lib/seen_light.wgsl") } else { wgsl!("lib/seen_camera.wgsl") });
     module.add(if atoms { wgsl!("objects/atom.wgsl") } else { wgsl!("objects/connector.wgsl") });
+    if key.drawn.is_layers() {
+        module.add(wgsl!("lib/layers.wgsl"));
+        module.add(wgsl!("layers/store.wgsl"));
+        module.add(if atoms { wgsl!("layers/atom.wgsl") } else { wgsl!("layers/connector.wgsl") });
+    }
     module
 }

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex};
 
 use super::counters::{Counters, Counting};
-use super::wgsl::ShaderEdits;
+use super::wgsl::{Module, ShaderEdits};
 
 /// Why the graphics device cannot do what is asked. Exit code 3.
 #[derive(Debug, thiserror::Error)]
@@ -267,6 +267,39 @@ impl Gpu {
         Counting::one(&self.counting.pipelines);
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let pipeline = self.device.create_render_pipeline(descriptor);
+        match pollster::block_on(scope.pop()) {
+            Some(error) => Err(GpuError::Driver(error.to_string())),
+            None => Ok(pipeline),
+        }
+    }
+
+    /// A compute pipeline with one group.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] with the driver's words where it does not fit its shader.
+    pub fn compute_pipeline(
+        &self,
+        label: &'static str,
+        module: &Module,
+        entry: &str,
+        layout: &wgpu::BindGroupLayout,
+    ) -> Result<wgpu::ComputePipeline, GpuError> {
+        let module = module.compile(self, label)?;
+        Counting::one(&self.counting.pipelines);
+        let layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(label),
+            bind_group_layouts: &[Some(layout)],
+            immediate_size: 0,
+        });
+        let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(label),
+            layout: Some(&layout),
+            module: &module,
+            entry_point: Some(entry),
+            compilation_options: Default::default(),
+            cache: None,
+        });
         match pollster::block_on(scope.pop()) {
             Some(error) => Err(GpuError::Driver(error.to_string())),
             None => Ok(pipeline),

@@ -52,6 +52,13 @@ impl PassTimer {
         })
     }
 
+    /// The same for a compute pass.
+    pub fn compute_pass(&mut self, name: &'static str) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
+        let wgpu::RenderPassTimestampWrites { query_set, beginning_of_pass_write_index, end_of_pass_write_index } =
+            self.pass(name)?;
+        Some(wgpu::ComputePassTimestampWrites { query_set, beginning_of_pass_write_index, end_of_pass_write_index })
+    }
+
     /// Ends the recording of a frame.
     pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
         let count = self.names.len() as u32 * 2;

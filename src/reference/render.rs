@@ -379,7 +379,9 @@ impl Picture<'_> {
                 basic.0.tone_mapped(radiance)
             }
         };
-        let occlusions = (0..).zip(self.occlusions).filter(|(_, occlusion)| occlusion.picks(surface));
+        // Occlusion is of what is opaque: layers are blended over it.
+        let occlusions = if material.opacity < 1.0 { &[] } else { self.occlusions };
+        let occlusions = (0..).zip(occlusions).filter(|(_, occlusion)| occlusion.picks(surface));
         occlusions.fold(color, |color, (number, occlusion)| {
             let num_rays = OCCLUSION_RAYS.div_ceil(seen.shared_by);
             let seed = seed(seen.pixel, seen.index, FOR_OCCLUSIONS + number);

@@ -153,6 +153,8 @@ pub struct World {
     tree: Option<Bvh2>,
     outlines: Vec<Outline>,
     outline_tree: Option<Bvh2>,
+    /// Of each material whether it lets light through.
+    see_through: Vec<bool>,
 }
 
 /// Where a part is.
@@ -191,6 +193,7 @@ impl World {
             tree: None,
             outlines: Vec::new(),
             outline_tree: None,
+            see_through: Vec::new(),
         };
         if let Some(meshes) = meshes {
             world.add_meshes(meshes, view_from_world);
@@ -294,13 +297,32 @@ impl World {
         found
     }
 
-    /// Whether anything that `counts` lies along a ray between `after` and `end`.
+    /// The same world in which what is of such materials, by number, neither casts shadows nor occludes.
+    pub fn with_see_through(self, see_through: Vec<bool>) -> World {
+        World { see_through, ..self }
+    }
+
+    fn is_see_through(&self, object: Object) -> bool {
+        let material = match object {
+            Object::Sphere(index) => self.spheres[index as usize].look.material,
+            Object::Cylinder(index) => self.cylinders[index as usize].looks[0].material,
+            Object::Triangle(index) => {
+                let part = self.triangles[index as usize].part as usize;
+                self.meshes.as_ref().map_or(0, |(meshes, _)| meshes.parts[part].look.material)
+            }
+        };
+        self.see_through.get(material as usize).is_some_and(|see_through| *see_through)
+    }
+
+    /// Whether anything opaque that `counts` lies along a ray between `after` and `end`.
     pub fn is_blocked(&self, ray: Ray, after: f64, end: f64, counts: impl Fn(Object) -> bool) -> bool {
         let Some(tree) = &self.tree else { return false };
         let Some((_, fast)) = self.fast_ray(ray, after, end) else { return false };
         !tree.ray_traverse_miss(fast, |_, slot| {
             let object = self.object(tree.primitive_indices[slot] as usize);
-            let blocks = self.meets(ray, object, after).is_some_and(|t| t < end) && counts(object);
+            let blocks = self.meets(ray, object, after).is_some_and(|t| t < end)
+                && counts(object)
+                && !self.is_see_through(object);
             if blocks { 0.0 } else { f32::INFINITY }
         })
     }

@@ -4,7 +4,7 @@
 //! [Murray2016 §4.2]. Shader: `shaders/objects/basic.wgsl`. Twin: `tests/twins/basic.rs`.
 
 use super::environment::{Environment, EnvironmentBlur, EnvironmentLobe, Studio};
-use super::{BASE_COLOR, MaterialContext, ObjectShader, Resource, ResourceData, brdf_table};
+use super::{BASE_COLOR, MaterialContext, OPACITY, ObjectShader, Resource, ResourceData, brdf_table};
 use crate::config::param::{Param, Values};
 use crate::gpu::{GpuStruct, StructInfo, Wgsl};
 use crate::{gpu_struct, wgsl};
@@ -12,7 +12,7 @@ use crate::{gpu_struct, wgsl};
 /// The parameters of `basic`.
 pub const PARAMS: &[Param] = &[
     BASE_COLOR,
-    Param::number("opacity", 1.0).range(0.0, 1.0).not_drawn_yet().doc("1 is opaque, 0 invisible."),
+    OPACITY,
     Param::number("smoothness", 0.5).range(0.0, 1.0).doc("0 is matt, 1 a mirror.").examples(&["0", "0.5", "0.8", "1"]),
     Param::number("metallic", 0.0)
         .range(0.0, 1.0)

@@ -3,7 +3,7 @@
 //!
 //! Where we differ from the paper: see `shaders/objects/toon.wgsl`. Twin: `tests/twins/toon.rs`.
 
-use super::{BASE_COLOR, Hull, MaterialContext, ObjectShader, linear, optional_linear};
+use super::{BASE_COLOR, Hull, MaterialContext, OPACITY, ObjectShader, linear, optional_linear};
 use crate::config::param::{Param, Values};
 use crate::gpu::{GpuStruct, StructInfo, Wgsl};
 use crate::{gpu_struct, wgsl};
@@ -14,7 +14,7 @@ const LEVELS: &[&str] = &["floor", "centre", "full"];
 /// The parameters of `toon`.
 pub const PARAMS: &[Param] = &[
     BASE_COLOR,
-    Param::number("opacity", 1.0).range(0.0, 1.0).not_drawn_yet().doc("1 is opaque, 0 invisible."),
+    OPACITY,
     Param::color("color", [0, 0, 0]).doc("Colour of both outlines.").examples(&[
         r##""#000000""##,
         r##""#8a1c1c""##,

@@ -2,14 +2,13 @@
 //!
 //! Twin: `tests/twins/unlit.rs`.
 
-use super::{BASE_COLOR, MaterialContext, ObjectShader};
+use super::{BASE_COLOR, MaterialContext, OPACITY, ObjectShader};
 use crate::config::param::{Param, Values};
 use crate::gpu::{GpuStruct, StructInfo, Wgsl};
 use crate::{gpu_struct, wgsl};
 
 /// The parameters of `unlit`.
-pub const PARAMS: &[Param] =
-    &[BASE_COLOR, Param::number("opacity", 1.0).range(0.0, 1.0).not_drawn_yet().doc("1 is opaque, 0 invisible.")];
+pub const PARAMS: &[Param] = &[BASE_COLOR, OPACITY];
 
 gpu_struct! {
     "objects/unlit.wgsl",

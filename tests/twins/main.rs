@@ -8,6 +8,7 @@ mod focus;
 mod furnace;
 mod gpu;
 mod impostors;
+mod layers;
 mod mesh_lines;
 mod meshes;
 mod occlusion;

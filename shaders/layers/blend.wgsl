@@ -1,0 +1,117 @@
+// The layers of a pixel over what is opaque there: its list is sorted from near to far, equal depths by their ids, and each fragment is
+// shaded from its id and blended until next to no light comes through. Nothing but the surfaces that count is ever shaded.
+// FINISH: 0 hands the colour to the next effect, 1 adds it up with the other samples', 2 writes picture values.
+
+@group(2) @binding(0) var<uniform> layers: LayerBand;
+@group(2) @binding(1) var<storage, read_write> layer_counts: array<u32>;
+@group(2) @binding(2) var<storage, read_write> layer_starts: array<u32>;
+@group(2) @binding(3) var<storage, read_write> layer_pool: array<vec2<u32>>;
+@group(2) @binding(4) var color: texture_2d<f32>;
+@group(2) @binding(5) var geometry: texture_2d<u32>;
+
+// Light that still comes through where blending ends: a quarter of a step of 10 bits.
+const LEAST_LIGHT: f32 = 1.0 / 4096.0;
+
+fn is_before(a: vec2<u32>, b: vec2<u32>) -> bool {
+    // Depths are positive: their bits are in their order.
+    return a.x < b.x || (a.x == b.x && a.y < b.y);
+}
+
+// Sorts by insertion at falling distances [Shell1959, throughout; Ciura2001, throughout]: in place, quick for few and for many.
+fn sort_layers(start: u32, count: u32) {
+    var gap = 1u;
+    if count > 4u { gap = 4u; }
+    if count > 10u { gap = 10u; }
+    if count > 23u { gap = 23u; }
+    if count > 57u { gap = 57u; }
+    if count > 132u { gap = 132u; }
+    if count > 301u { gap = 301u; }
+    loop {
+        for (var i = gap; i < count; i++) {
+            let moved = layer_pool[start + i];
+            var j = i;
+            while j >= gap {
+                let other = layer_pool[start + j - gap];
+                if !is_before(moved, other) { break; }
+                layer_pool[start + j] = other;
+                j -= gap;
+            }
+            layer_pool[start + j] = moved;
+        }
+        if gap <= 1u { break; }
+        switch gap {
+            case 301u: { gap = 132u; }
+            case 132u: { gap = 57u; }
+            case 57u: { gap = 23u; }
+            case 23u: { gap = 10u; }
+            case 10u: { gap = 4u; }
+            default: { gap = 1u; }
+        }
+    }
+}
+
+struct Blended {
+    // Premultiplied linear light of one sample.
+    color: vec4<f32>,
+    // The nearest surface, for effects that follow.
+    geometry: vec4<u32>,
+}
+
+fn blended(position_px: vec2<f32>) -> Blended {
+    let at = vec2<i32>(position_px);
+    let behind = textureLoad(color, at, 0);
+    let pixel = u32(at.y) * layers.width + u32(at.x) - layers.first_pixel;
+    let count = layer_counts[pixel];
+    var result = Blended(behind, textureLoad(geometry, at, 0));
+    if count == 0u { return result; }
+    let start = layer_starts[pixel];
+    // The pool is too small: it grows, and all is drawn again.
+    if start + count > layers.capacity { return result; }
+    sort_layers(start, count);
+    let ray = ray_at(view, position_px);
+    var light = vec3<f32>(0.0);
+    var open = 1.0;
+    for (var index = 0u; index < count; index++) {
+        let id = layer_pool[start + index].y;
+        let s = surface_at(ray, id);
+        let material = material_of(id);
+        let opacity = materials[material].opacity;
+        light += open * opacity * shade_object(s, material);
+        open *= 1.0 - opacity;
+        if index == 0u {
+            let depth = -s.position_view.z;
+            let bend_px = s.bend * pixel_world(view, depth);
+            result.geometry = pack_geometry(Geometry(depth, s.normal_view, s.facet_view, bend_px, s.group, s.object));
+        }
+        if open < LEAST_LIGHT { break; }
+    }
+    result.color = vec4<f32>(light + open * behind.rgb, 1.0 - open * (1.0 - behind.a));
+    return result;
+}
+
+fn layers_finished(color: vec4<f32>) -> vec4<f32> {
+    if FINISH == 2u { return encode(color, output.background); }
+    if FINISH == 1u { return color * view.sample_weight; }
+    return color;
+}
+
+@fragment
+fn blend_layers(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    return layers_finished(blended(position.xy).color);
+}
+
+@fragment
+fn blend_layers_geometry(@builtin(position) position: vec4<f32>) -> Shaded {
+    let result = blended(position.xy);
+    return Shaded(result.color, result.geometry);
+}
+
+struct Shaded {
+    @location(0) color: vec4<f32>,
+    @location(1) geometry: vec4<u32>,
+}
+
+@vertex
+fn layers_vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
+    return vec4<f32>(f32(corner & 1u) * 4.0 - 1.0, f32(corner >> 1u) * 4.0 - 1.0, 0.5, 1.0);
+}

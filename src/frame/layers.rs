@@ -1,0 +1,403 @@
+//! Layers: what is transparent, all of its surfaces at each pixel, blended from near to far over what is opaque.
+//!
+//! Every fragment is kept, once, in a pool of exactly as many: fragments are counted for each pixel, given room, written down with
+//! 8 bytes each (depth and id), sorted, and shaded from their ids only as far as light comes through (ours, of the family that
+//! [Maule2014, throughout] surveys). Nothing is dropped: where the pool is too small, the frame tells by how much, the pool
+//! grows and the frame is drawn again; where it would outgrow a binding, the picture is drawn in bands.
+
+use super::ShadeKey;
+use super::fullscreen;
+use super::objects::ObjectBuffers;
+use super::post::Finish;
+use super::shade::Shade;
+use super::visibility::{Drawn, SceneBindings, Visibility, VisibilityKey, VisibilityPass};
+use crate::gpu::{Bound, Gpu, GpuError, KeptBindGroup, KeptBuffer, Module, PassTimer};
+use crate::{gpu_struct, wgsl};
+
+/// Bytes of a fragment.
+const FRAGMENT_BYTES: u64 = 8;
+/// Fragments for each pixel that a pool holds before more are known to be there.
+const FIRST_LAYERS: u64 = 4;
+/// How much more than what was needed a pool holds, so that a turned scene does not outgrow it at once.
+const SLACK: f64 = 1.25;
+/// Pixels of one invocation that gives room, and invocations of a group: see `shaders/layers/room.wgsl`.
+const ROOM_RUN: u32 = 32;
+const ROOM_GROUP: u32 = 64;
+
+gpu_struct! {
+    "lib/layers.wgsl",
+    /// See `shaders/lib/layers.wgsl`.
+    pub struct LayerBand {
+        /// Width of what is drawn, in pixels.
+        pub width: u32,
+        /// Pixels before the band's first row.
+        pub first_pixel: u32,
+        /// Pixels of the band.
+        pub num_pixels: u32,
+        /// Fragments that the pool holds.
+        pub capacity: u32,
+    }
+}
+
+/// What a frame's layers are drawn by.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LayersPlan {
+    /// The shading of blended fragments.
+    pub shade: ShadeKey,
+    /// Counting.
+    pub count: VisibilityKey,
+    /// Writing.
+    pub write: VisibilityKey,
+    /// Post effects before them.
+    pub after_effects: usize,
+}
+
+/// Where the blended picture goes, and what it is blended over.
+pub struct LayerTargets<'a> {
+    /// Opaque light of one sample.
+    pub color: &'a wgpu::TextureView,
+    /// Its surfaces.
+    pub geometry: &'a wgpu::TextureView,
+    /// Depths of what is opaque.
+    pub depth: &'a wgpu::TextureView,
+    /// The picture.
+    pub to: &'a wgpu::TextureView,
+    /// Its surfaces, for effects that follow.
+    pub to_geometry: Option<&'a wgpu::TextureView>,
+    /// Whether the picture is cleared first.
+    pub clears: bool,
+}
+
+/// Some rows of the picture, with what their passes bind.
+struct Band {
+    rows: std::ops::Range<u32>,
+    raster: wgpu::BindGroup,
+    room: wgpu::BindGroup,
+    blend: wgpu::BindGroup,
+}
+
+#[derive(Default)]
+struct BandSlot {
+    params: Option<KeptBuffer>,
+    raster: KeptBindGroup,
+    room: KeptBindGroup,
+    blend: KeptBindGroup,
+}
+
+/// What layers keep from frame to frame.
+#[derive(Default)]
+pub struct Layers {
+    size: [u32; 2],
+    counts: Option<wgpu::Buffer>,
+    starts: Option<wgpu::Buffer>,
+    pool: Option<wgpu::Buffer>,
+    total: Option<wgpu::Buffer>,
+    readable: Option<(wgpu::Buffer, u64)>,
+    /// Fragments that the pool holds.
+    capacity: u64,
+    num_bands: u32,
+    room: Option<(wgpu::BindGroupLayout, wgpu::ComputePipeline)>,
+    slots: Vec<BandSlot>,
+    num_totals: u64,
+}
+
+fn storage(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Storage { read_only: false },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    }
+}
+
+fn plain(binding: u32, visibility: wgpu::ShaderStages, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None }
+}
+
+/// What counting and writing bind.
+pub fn raster_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    let stage = wgpu::ShaderStages::FRAGMENT;
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("layers"),
+        entries: &[
+            plain(0, stage, fullscreen::UNIFORM),
+            storage(1, stage),
+            storage(2, stage),
+            storage(3, stage),
+            plain(4, stage, fullscreen::texture(wgpu::TextureSampleType::Depth)),
+        ],
+    })
+}
+
+/// What blending binds beside the scene and the shading.
+pub fn blend_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    let stage = wgpu::ShaderStages::FRAGMENT;
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("blend layers"),
+        entries: &[
+            plain(0, stage, fullscreen::UNIFORM),
+            storage(1, stage),
+            storage(2, stage),
+            storage(3, stage),
+            plain(4, stage, fullscreen::texture(wgpu::TextureSampleType::Float { filterable: false })),
+            plain(5, stage, fullscreen::texture(wgpu::TextureSampleType::Uint)),
+        ],
+    })
+}
+
+impl LayersPlan {
+    /// The plan of a frame whose opaque part has such keys.
+    pub fn new(
+        shade: &ShadeKey,
+        seen: VisibilityKey,
+        finish: Finish,
+        surfaces: bool,
+        after_effects: usize,
+    ) -> LayersPlan {
+        let shade =
+            ShadeKey { layers: Some((finish, surfaces)), hulls: false, encode: false, geometry: true, ..shade.clone() };
+        let raster = |drawn| VisibilityKey { drawn, hulls: false, ..seen };
+        LayersPlan { shade, count: raster(Drawn::CountedLayers), write: raster(Drawn::WrittenLayers), after_effects }
+    }
+}
+
+impl Layers {
+    /// Builds what the layers of a frame need, unless it is there.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] where a shader does not compile.
+    pub fn prepare(&mut self, gpu: &Gpu) -> Result<(), GpuError> {
+        if self.room.is_none() {
+            let stage = wgpu::ShaderStages::COMPUTE;
+            let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some("room of layers"),
+                entries: &[
+                    plain(0, stage, fullscreen::UNIFORM),
+                    storage(1, stage),
+                    storage(2, stage),
+                    storage(3, stage),
+                ],
+            });
+            let pipeline = gpu.compute_pipeline("room of layers", &room_module(), "make_room", &layout)?;
+            self.room = Some((layout, pipeline));
+        }
+        Ok(())
+    }
+
+    /// Forgets the pipeline, so that it is built anew.
+    pub fn forget_pipelines(&mut self) {
+        self.room = None;
+    }
+
+    /// Makes the buffers fit a picture.
+    ///
+    /// # Errors
+    /// [`GpuError::TooMany`] where a row of the picture alone outgrows a binding.
+    fn fit(&mut self, gpu: &Gpu, size: [u32; 2], limit: u64, samples: u32) -> Result<(), GpuError> {
+        let most = limit / FRAGMENT_BYTES;
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        if self.size != size || self.num_bands == 0 {
+            // Counts of a band must fit a binding, too.
+            self.num_bands = (pixels * 4).div_ceil(limit.max(1)).max(1) as u32;
+            self.size = size;
+            self.capacity = self.capacity.max((pixels / u64::from(self.num_bands)) * FIRST_LAYERS).min(most);
+            self.pool = None;
+            (self.counts, self.starts) = (None, None);
+        }
+        if self.num_bands > size[1] {
+            let bytes = self.capacity * FRAGMENT_BYTES * u64::from(self.num_bands) / u64::from(size[1].max(1));
+            return Err(GpuError::TooMany { what: "layers of one row", count: self.num_bands as usize, bytes, limit });
+        }
+        let rows = size[1].div_ceil(self.num_bands);
+        let band_bytes = u64::from(rows) * u64::from(size[0]) * 4;
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
+        let fit = |buffer: &mut Option<wgpu::Buffer>, label, bytes: u64| {
+            if buffer.as_ref().is_none_or(|buffer| buffer.size() != bytes) {
+                *buffer = None;
+                *buffer = Some(gpu.empty_buffer(label, bytes, usage));
+            }
+        };
+        fit(&mut self.counts, "layer counts", band_bytes);
+        fit(&mut self.starts, "layer starts", band_bytes);
+        fit(&mut self.pool, "layers", self.capacity.max(1) * FRAGMENT_BYTES);
+        fit(&mut self.total, "layer total", 16);
+        let totals = u64::from(samples) * u64::from(self.num_bands);
+        if self.readable.as_ref().is_none_or(|(_, count)| *count < totals) {
+            let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+            self.readable = Some((gpu.empty_buffer("layer totals", totals * 4, usage), totals));
+        }
+        self.num_totals = 0;
+        gpu.check()
+    }
+
+    /// Bytes that they take.
+    pub fn bytes(&self) -> u64 {
+        [&self.counts, &self.starts, &self.pool].into_iter().flatten().map(wgpu::Buffer::size).sum()
+    }
+
+    /// Fragments that the last frame had room for, and in how many bands it was drawn.
+    fn bands(
+        &mut self,
+        gpu: &Gpu,
+        visibility: &Visibility,
+        shade: &Shade,
+        to: &LayerTargets<'_>,
+    ) -> Result<Vec<Band>, GpuError> {
+        let rows = self.size[1].div_ceil(self.num_bands.max(1));
+        self.slots.resize_with(self.num_bands as usize, BandSlot::default);
+        let (Some(counts), Some(starts), Some(pool), Some(total), Some((room_layout, _))) =
+            (&self.counts, &self.starts, &self.pool, &self.total, &self.room)
+        else {
+            return Ok(Vec::new());
+        };
+        let Some(blend_layout) = shade.layers_layout() else { return Ok(Vec::new()) };
+        let mut bands = Vec::new();
+        for (index, slot) in (0..).zip(&mut self.slots) {
+            let rows = index * rows..((index + 1) * rows).min(self.size[1]);
+            if rows.is_empty() {
+                continue;
+            }
+            let band = LayerBand {
+                width: self.size[0],
+                first_pixel: rows.start * self.size[0],
+                num_pixels: (rows.end - rows.start) * self.size[0],
+                capacity: self.capacity as u32,
+            };
+            let params = slot.params.get_or_insert_with(|| KeptBuffer::uniform("layers"));
+            let params = params.set(gpu, bytemuck::bytes_of(&band), 16)?;
+            let stored = |last: Vec<(u32, Bound)>| {
+                let mut bound = vec![
+                    (0, Bound::Buffer(params.clone())),
+                    (1, Bound::Buffer(counts.clone())),
+                    (2, Bound::Buffer(starts.clone())),
+                ];
+                bound.extend(last);
+                bound
+            };
+            let pool = || (3, Bound::Buffer(pool.clone()));
+            let view = |binding, view: &wgpu::TextureView| (binding, Bound::View(view.clone()));
+            bands.push(Band {
+                rows,
+                raster: slot.raster.get(
+                    gpu,
+                    "layers",
+                    &visibility.layers_layout,
+                    stored(vec![pool(), view(4, to.depth)]),
+                ),
+                room: slot.room.get(
+                    gpu,
+                    "room of layers",
+                    room_layout,
+                    stored(vec![(3, Bound::Buffer(total.clone()))]),
+                ),
+                blend: slot.blend.get(
+                    gpu,
+                    "blend layers",
+                    blend_layout,
+                    stored(vec![pool(), view(4, to.color), view(5, to.geometry)]),
+                ),
+            });
+        }
+        Ok(bands)
+    }
+
+    /// Makes room for the layers of a frame, before its first sample.
+    ///
+    /// # Errors
+    /// As [`Layers::prepare`], and [`GpuError::TooMany`] where nothing helps.
+    pub fn begin(&mut self, gpu: &Gpu, size: [u32; 2], memory_bytes: u64, samples: u32) -> Result<(), GpuError> {
+        let limits = gpu.device.limits();
+        let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size).min(memory_bytes);
+        self.fit(gpu, size, limit, samples)
+    }
+
+    /// Draws the layers of one sample.
+    ///
+    /// # Errors
+    /// Never for uniforms of a fixed size.
+    #[allow(clippy::too_many_arguments)]
+    pub fn draw(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        (visibility, shade): (&Visibility, &Shade),
+        plan: &LayersPlan,
+        (scene, objects): (&SceneBindings, &ObjectBuffers),
+        pass: &VisibilityPass<'_>,
+        shade_group: &wgpu::BindGroup,
+        to: &LayerTargets<'_>,
+        timer: &mut Option<PassTimer>,
+    ) -> Result<(), GpuError> {
+        let bands = self.bands(gpu, visibility, shade, to)?;
+        let (Some(counts), Some(total), Some((readable, _)), Some((_, room))) =
+            (&self.counts, &self.total, &self.readable, &self.room)
+        else {
+            return Ok(());
+        };
+        for (index, band) in bands.iter().enumerate() {
+            encoder.clear_buffer(counts, 0, None);
+            encoder.clear_buffer(total, 0, None);
+            let raster = |name, key| VisibilityPass { name, key, ..*pass };
+            let rows = band.rows.clone();
+            let counted = raster("layers_counted", plan.count);
+            visibility.draw_layers(encoder, scene, objects, &counted, &band.raster, rows.clone(), timer);
+            {
+                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                    label: Some("room of layers"),
+                    timestamp_writes: timer.as_mut().and_then(|timer| timer.compute_pass("layers_room")),
+                });
+                pass.set_pipeline(room);
+                pass.set_bind_group(0, &band.room, &[]);
+                let pixels = (rows.end - rows.start) * self.size[0];
+                pass.dispatch_workgroups(pixels.div_ceil(ROOM_RUN * ROOM_GROUP), 1, 1);
+            }
+            encoder.copy_buffer_to_buffer(total, 0, readable, self.num_totals * 4, Some(4));
+            self.num_totals += 1;
+            let written = raster("layers_written", plan.write);
+            visibility.draw_layers(encoder, scene, objects, &written, &band.raster, rows.clone(), timer);
+            let clears = to.clears && index == 0;
+            let groups = [&scene.group, shade_group, &band.blend];
+            shade.draw_layers(encoder, &plan.shade, groups, pass.view, to, clears, rows, timer);
+        }
+        Ok(())
+    }
+
+    /// Whether the pool held all fragments of the frame that was submitted last; where not, it has grown. Waits for the frame.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] where the totals cannot be read.
+    pub fn finish(&mut self, gpu: &Gpu, memory_bytes: u64) -> Result<bool, GpuError> {
+        let Some((readable, _)) = self.readable.as_ref().filter(|_| self.num_totals > 0) else { return Ok(true) };
+        let bytes = self.num_totals * 4;
+        readable.map_async(wgpu::MapMode::Read, ..bytes, |_| {});
+        gpu.wait()?;
+        let needed = {
+            let mapped = readable.get_mapped_range(..bytes).map_err(|error| GpuError::Driver(error.to_string()))?;
+            let totals = mapped.chunks_exact(4).map(bytemuck::pod_read_unaligned::<u32>);
+            totals.max().map_or(0, u64::from)
+        };
+        readable.unmap();
+        if needed <= self.capacity {
+            return Ok(true);
+        }
+        let limits = gpu.device.limits();
+        let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size).min(memory_bytes);
+        let most = limit / FRAGMENT_BYTES;
+        let wanted = (needed as f64 * SLACK) as u64;
+        if wanted > most {
+            self.num_bands = (u64::from(self.num_bands) * wanted.div_ceil(most.max(1))).min(u64::from(u32::MAX)) as u32;
+            (self.counts, self.starts) = (None, None);
+        }
+        self.capacity = wanted.min(most);
+        Ok(false)
+    }
+}
+
+/// The WGSL that gives lists their room.
+pub fn room_module() -> Module {
+    Module::new(&[wgsl!("lib/layers.wgsl"), wgsl!("layers/room.wgsl")])
+}
