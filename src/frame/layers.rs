@@ -10,7 +10,7 @@ use super::fullscreen;
 use super::objects::ObjectBuffers;
 use super::post::Finish;
 use super::shade::Shade;
-use super::visibility::{Drawn, SceneBindings, Visibility, VisibilityKey, VisibilityPass};
+use super::visibility::{Drawn, ID_FORMAT, SceneBindings, Visibility, VisibilityKey, VisibilityPass};
 use crate::gpu::{Bound, Gpu, GpuError, KeptBindGroup, KeptBuffer, Module, PassTimer};
 use crate::{gpu_struct, wgsl};
 
@@ -60,6 +60,8 @@ pub struct LayerTargets<'a> {
     pub geometry: &'a wgpu::TextureView,
     /// Depths of what is opaque.
     pub depth: &'a wgpu::TextureView,
+    /// Ids of what is opaque, which become those of the nearest surfaces.
+    pub ids: &'a wgpu::TextureView,
     /// The picture.
     pub to: &'a wgpu::TextureView,
     /// Its surfaces, for effects that follow.
@@ -97,6 +99,7 @@ pub struct Layers {
     capacity: u64,
     num_bands: u32,
     room: Option<(wgpu::BindGroupLayout, wgpu::ComputePipeline)>,
+    nearest: Option<wgpu::RenderPipeline>,
     slots: Vec<BandSlot>,
     num_totals: u64,
 }
@@ -165,12 +168,25 @@ impl LayersPlan {
     }
 }
 
+impl LayersPlan {
+    /// Whether effects follow that ask for the nearest surface.
+    pub fn leaves_surfaces(&self) -> bool {
+        self.shade.layers.is_some_and(|(_, surfaces)| surfaces)
+    }
+}
+
 impl Layers {
     /// Builds what the layers of a frame need, unless it is there.
     ///
     /// # Errors
     /// [`GpuError::Driver`] where a shader does not compile.
-    pub fn prepare(&mut self, gpu: &Gpu) -> Result<(), GpuError> {
+    pub fn prepare(&mut self, gpu: &Gpu, shade: &Shade, plan: &LayersPlan) -> Result<(), GpuError> {
+        if let Some(layout) = shade.layers_layout().filter(|_| plan.leaves_surfaces() && self.nearest.is_none()) {
+            let entries = ["nearest_vertex", "nearest_id"];
+            let targets = [ID_FORMAT.into()];
+            let module = nearest_module();
+            self.nearest = Some(fullscreen::pipeline(gpu, "nearest layers", &module, entries, &[layout], &targets)?);
+        }
         if self.room.is_none() {
             let stage = wgpu::ShaderStages::COMPUTE;
             let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -190,7 +206,7 @@ impl Layers {
 
     /// Forgets the pipeline, so that it is built anew.
     pub fn forget_pipelines(&mut self) {
-        self.room = None;
+        (self.room, self.nearest) = (None, None);
     }
 
     /// Makes the buffers fit a picture.
@@ -361,7 +377,26 @@ impl Layers {
             visibility.draw_layers(encoder, scene, objects, &written, &band.raster, rows.clone(), timer);
             let clears = to.clears && index == 0;
             let groups = [&scene.group, shade_group, &band.blend];
-            shade.draw_layers(encoder, &plan.shade, groups, pass.view, to, clears, rows, timer);
+            shade.draw_layers(encoder, &plan.shade, groups, pass.view, to, clears, rows.clone(), timer);
+            if let Some(nearest) = self.nearest.as_ref().filter(|_| plan.leaves_surfaces()) {
+                let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                    label: Some("nearest layers"),
+                    color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                        view: to.ids,
+                        depth_slice: None,
+                        resolve_target: None,
+                        ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+                    })],
+                    depth_stencil_attachment: None,
+                    timestamp_writes: timer.as_mut().and_then(|timer| timer.pass("layers_nearest")),
+                    occlusion_query_set: None,
+                    multiview_mask: None,
+                });
+                pass.set_pipeline(nearest);
+                pass.set_bind_group(0, &band.blend, &[]);
+                pass.set_scissor_rect(0, rows.start, self.size[0], rows.end - rows.start);
+                pass.draw(0..3, 0..1);
+            }
         }
         Ok(())
     }
@@ -395,6 +430,11 @@ impl Layers {
         self.capacity = wanted.min(most);
         Ok(false)
     }
+}
+
+/// The WGSL of nearest ids.
+pub fn nearest_module() -> Module {
+    Module::new(&[wgsl!("lib/layers.wgsl"), wgsl!("layers/nearest.wgsl")])
 }
 
 /// The WGSL that gives lists their room.

@@ -190,7 +190,7 @@ impl Plan {
     fn layers_at(&self) -> Option<LayersAt> {
         self.layers.as_ref().map(|layers| LayersAt {
             effects: layers.after_effects,
-            surfaces: layers.shade.layers.is_some_and(|(_, surfaces)| surfaces),
+            surfaces: layers.leaves_surfaces(),
         })
     }
 
@@ -314,7 +314,7 @@ impl Renderer {
                 self.visibility.prepare(gpu, needs.kinds, key)?;
             }
             self.shade.prepare(gpu, &self.visibility, &layers.shade)?;
-            self.layers.prepare(gpu)?;
+            self.layers.prepare(gpu, &self.shade, layers)?;
         }
         if !plan.direct {
             self.resolve.prepare(gpu, wide)?;
@@ -469,6 +469,7 @@ impl Renderer {
                     color,
                     geometry: opaque,
                     depth: &depth,
+                    ids: &ids,
                     to: if is_last { targets.last } else { next },
                     to_geometry: turn(targets.geometry, 1).filter(|_| !is_last),
                     clears: index == 0 || !is_last,
