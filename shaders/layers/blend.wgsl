@@ -17,7 +17,7 @@ fn is_before(a: vec2<u32>, b: vec2<u32>) -> bool {
     return a.x < b.x || (a.x == b.x && a.y < b.y);
 }
 
-// Sorts by insertion at falling distances [Shell1959, throughout; Ciura2001, throughout]: in place, quick for few and for many.
+// Sorts by insertion at falling distances [Shell1959, throughout] [Ciura2001, throughout]: in place, quick for few and for many.
 fn sort_layers(start: u32, count: u32) {
     var gap = 1u;
     if count > 4u { gap = 4u; }

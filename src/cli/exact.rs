@@ -12,7 +12,7 @@ use indicatif::ProgressStyle;
 use super::inputs::Loaded;
 use super::render::{Args, cannot_write, files_read, progress_bar, rounded};
 use super::{Failure, answer, inputs, tell};
-use crate::config::{Notice, Style};
+use crate::config::Style;
 use crate::engine::Request;
 use crate::engine::exact::{Exact, ExactError};
 use crate::scene::{LoadOptions, RowsHeader, write_png_rows};
@@ -49,9 +49,8 @@ fn check(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-fn draw(args: &Args, mut style: Style, loaded: Loaded) -> Result<(), Failure> {
+fn draw(args: &Args, style: Style, loaded: Loaded) -> Result<(), Failure> {
     let start = Instant::now();
-    keep_warnings(&mut style);
     inputs::print_warnings(&style, &loaded.scene, args.scenes());
     let atoms = loaded.scene.molecule.atoms.len();
     let triangles = loaded.scene.assembly.num_triangles();
@@ -95,14 +94,6 @@ fn draw(args: &Args, mut style: Style, loaded: Loaded) -> Result<(), Failure> {
         answer(line)?;
     }
     Ok(())
-}
-
-/// Leaves of a style's warnings those that hold for the reference renderer, too.
-pub(super) fn keep_warnings(style: &mut Style) {
-    style.warnings.retain(|warning| match &warning.notice {
-        Notice::PropertyNotDrawn { name } => name != "opacity",
-        _ => true,
-    });
 }
 
 /// Draws one picture, and writes it where an output is given.

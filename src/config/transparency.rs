@@ -16,7 +16,8 @@ pub const PARAMS: &[Param] = &[
     Param::count("memory_mb", 512)
         .range(16.0, 65536.0)
         .unit("MB")
-        .doc("Most memory that the fragments of what is transparent may take at once; a picture with more is drawn in bands, and is the same."),
+        .doc("Most memory that the fragments of what is transparent may take at once; a picture with more is drawn in bands, and is the same.")
+        .examples(&["64", "512", "4096"]),
 ];
 
 /// How fragments are put in order.

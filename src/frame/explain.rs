@@ -83,7 +83,12 @@ pub fn steps(gpu: &Gpu, plan: &Plan, input: &FrameInput<'_>, counts: [u64; 3]) -
     let is_last = plan.direct && chain.pictures == 0;
     steps.push(Step::drawn("shade", size, of_effects + if is_last { output } else { 0 }, reason));
 
+    let layers = layer_steps(plan, size);
+    let layers_after = plan.layers.as_ref().map_or(plan.effects.len(), |layers| layers.after_effects);
     for (index, key) in plan.effects.iter().enumerate() {
+        if index == layers_after {
+            steps.extend(layers.clone());
+        }
         let effect = EFFECTS[key.effect];
         for pass in effect.passes(key.features) {
             let is_end = pass.target == PassTarget::Picture;
@@ -101,6 +106,10 @@ pub fn steps(gpu: &Gpu, plan: &Plan, input: &FrameInput<'_>, counts: [u64; 3]) -
         }
     }
 
+    if layers_after == plan.effects.len() {
+        steps.extend(layers);
+    }
+
     steps.push(if plan.direct {
         Step::left_out("resolve", "one sample of 8 bits a channel is written straight away")
     } else {
@@ -110,6 +119,28 @@ pub fn steps(gpu: &Gpu, plan: &Plan, input: &FrameInput<'_>, counts: [u64; 3]) -
         };
         Step::drawn("resolve", size, bytes_of(size, light_format(gpu)) + output, reason)
     });
+    steps
+}
+
+/// The passes of what is transparent. How many fragments there are is known when they are counted.
+fn layer_steps(plan: &Plan, size: [u32; 2]) -> Vec<Step> {
+    let Some(layers) = &plan.layers else { return vec![Step::left_out("layers", "nothing is transparent")] };
+    let lists = 2 * 4 * u64::from(size[0]) * u64::from(size[1]);
+    let mut steps = vec![
+        Step::drawn(
+            "layers_counted",
+            size,
+            lists,
+            "some objects have an opacity below 1: how many surfaces each pixel has",
+        ),
+        Step::drawn("layers_room", size, 0, "each pixel's list gets its place in the pool"),
+        Step::drawn("layers_written", size, 0, "8 bytes for each fragment, in a pool of as many as there are"),
+        Step::drawn("layers_blended", size, 0, "each list is sorted, shaded and blended until no light comes through"),
+    ];
+    if layers.leaves_surfaces() {
+        let reason = "a post effect follows, which sees the nearest surface";
+        steps.push(Step::drawn("layers_nearest", size, 0, reason));
+    }
     steps
 }
 

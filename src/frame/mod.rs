@@ -188,10 +188,9 @@ impl Plan {
 
     /// Where layers stand among the effects.
     fn layers_at(&self) -> Option<LayersAt> {
-        self.layers.as_ref().map(|layers| LayersAt {
-            effects: layers.after_effects,
-            surfaces: layers.leaves_surfaces(),
-        })
+        self.layers
+            .as_ref()
+            .map(|layers| LayersAt { effects: layers.after_effects, surfaces: layers.leaves_surfaces() })
     }
 
     /// How often the picture of a sample is changed.

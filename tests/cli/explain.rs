@@ -24,13 +24,25 @@ fn every_look_has_the_passes_that_it_needs() {
         (
             "advertisement",
             format!("shadow visibility shade occlusion occlusion_applied {focus} resolve"),
-            "hull outlines outlinePost",
+            "hull outlines layers outlinePost",
         ),
-        ("education", "visibility hull outlines shade resolve".to_owned(), "shadow ssaoPost outlinePost dofPost"),
-        ("scientific", "visibility shade resolve".to_owned(), "shadow hull outlines ssaoPost outlinePost dofPost"),
-        ("future", format!("visibility shade {focus} resolve"), "shadow hull outlines ssaoPost outlinePost"),
-        ("illustrative", format!("shadow visibility shade {lines} {lines} resolve"), "hull outlines ssaoPost dofPost"),
-        ("technical", format!("visibility shade {lines} resolve"), "shadow hull outlines ssaoPost dofPost"),
+        (
+            "education",
+            "visibility hull outlines shade resolve".to_owned(),
+            "shadow layers ssaoPost outlinePost dofPost",
+        ),
+        (
+            "scientific",
+            "visibility shade resolve".to_owned(),
+            "shadow hull outlines layers ssaoPost outlinePost dofPost",
+        ),
+        ("future", format!("visibility shade {focus} resolve"), "shadow hull outlines layers ssaoPost outlinePost"),
+        (
+            "illustrative",
+            format!("shadow visibility shade {lines} {lines} resolve"),
+            "hull outlines layers ssaoPost dofPost",
+        ),
+        ("technical", format!("visibility shade {lines} resolve"), "shadow hull outlines layers ssaoPost dofPost"),
     ] {
         let passes = passes(&folder, &format!("c60 -s {look}"));
         assert_eq!((names(&passes, true), names(&passes, false).as_str()), (drawn, left_out), "{look}");

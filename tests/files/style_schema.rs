@@ -494,10 +494,15 @@ fn everything(house: &House) -> String {
         });
         examples.collect::<Vec<_>>().join(", ")
     };
-    let sections = SECTIONS.iter().filter(|section| section.is_drawn()).map(|section| {
-        let object = format!("{{ {} }}", members(section.params));
-        if section.is_list { format!("{:?}: [{object}]", section.key) } else { format!("{:?}: {object}", section.key) }
-    });
+    let sections =
+        SECTIONS.iter().filter(|section| section.is_drawn() && section.key != "transparency").map(|section| {
+            let object = format!("{{ {} }}", members(section.params));
+            if section.is_list {
+                format!("{:?}: [{object}]", section.key)
+            } else {
+                format!("{:?}: {object}", section.key)
+            }
+        });
     let drawn = house.0.iter().filter(|entry| entry.drawn);
     let shaders = drawn.map(|entry| {
         format!(

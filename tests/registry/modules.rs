@@ -8,8 +8,8 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{AddressSpace, Handle, Type, TypeInner};
 use restyle::effects::EFFECTS;
 use restyle::frame::{
-    EffectKey, Finish, ShadeKey, ShaderNeeds, ShadowFilter, VisibilityKey, aov_module, effect_module, mesh_module,
-    resolve_module, shade_module, visibility_module,
+    Drawn, EffectKey, Finish, ShadeKey, ShaderNeeds, ShadowFilter, VisibilityKey, aov_module, effect_module, layers,
+    mesh_module, resolve_module, shade_module, visibility_module,
 };
 use restyle::gpu::Module;
 use restyle::shading::SHADERS;
@@ -52,12 +52,17 @@ pub fn survey() -> &'static Survey {
         for orthographic in [false, true] {
             for hulls in [false, true] {
                 for light in [false, true] {
-                    let key = VisibilityKey { hulls, orthographic, light };
-                    survey.read(&format!("visibility of atoms, {key:?}"), &visibility_module(true, key));
-                    survey.read(&format!("visibility of connectors, {key:?}"), &visibility_module(false, key));
-                    for (shell, numbered) in [(false, false), (false, true), (true, false), (true, true)] {
-                        let name = format!("visibility of meshes, shell {shell}, numbered {numbered}, {key:?}");
-                        survey.read(&name, &mesh_module(key, shell, numbered));
+                    for drawn in [Drawn::All, Drawn::Opaque, Drawn::CountedLayers, Drawn::WrittenLayers] {
+                        if drawn.is_layers() && (hulls || light) {
+                            continue;
+                        }
+                        let key = VisibilityKey { hulls, orthographic, light, drawn };
+                        survey.read(&format!("visibility of atoms, {key:?}"), &visibility_module(true, key));
+                        survey.read(&format!("visibility of connectors, {key:?}"), &visibility_module(false, key));
+                        for (shell, numbered) in [(false, false), (false, true), (true, false), (true, true)] {
+                            let name = format!("visibility of meshes, shell {shell}, numbered {numbered}, {key:?}");
+                            survey.read(&name, &mesh_module(key, shell, numbered));
+                        }
                     }
                 }
             }
@@ -67,6 +72,8 @@ pub fn survey() -> &'static Survey {
             }
         }
         survey.read("resolve", &resolve_module());
+        survey.read("room of layers", &layers::room_module());
+        survey.read("nearest layers", &layers::nearest_module());
         for key in effect_keys() {
             survey.read(&format!("effect, {key:?}"), &effect_module(&key));
         }
@@ -148,7 +155,7 @@ fn collect(parsed: &naga::Module, ty: Handle<Type>, into: &mut BTreeSet<Handle<T
 }
 
 /// How many yes-or-no questions a [`ShadeKey`] answers, beside its list of shaders.
-const NUM_SWITCHES: u32 = 17;
+const NUM_SWITCHES: u32 = 18;
 
 /// Answers, one a bit, of which at most one differs from the rest.
 fn covering_switches() -> impl Iterator<Item = u32> {
@@ -207,6 +214,7 @@ fn shade_key(shaders: u32, switches: u32, features: u32) -> ShadeKey {
         encode: on(8),
         soft_taps: if on(12) { 16 } else { 0 },
         geometry: on(15),
+        layers: on(17).then_some((if on(16) { Finish::Add } else { Finish::Next }, on(15))),
         shadow_filter: if on(16) { ShadowFilter::Depth } else { ShadowFilter::Objects },
         orthographic: on(11),
     }

@@ -44,9 +44,10 @@ impl Strip {
 }
 
 /// Parameters without pictures: they change nothing in a still, or no more than its noise, or only what others show is changed.
-const UNSEEN: [(&str, &str); 7] = [
+const UNSEEN: [(&str, &str); 8] = [
     ("geometry", "file_unit"),
     ("lights", "movable"),
+    ("transparency", "memory_mb"),
     ("ssaoPost", "samples"),
     ("ssaoPost", "blur"),
     ("ssaoPost", "applies_to"),
