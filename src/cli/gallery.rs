@@ -118,7 +118,6 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     }
     let mut scenes: Vec<Named<Scene>> = Vec::new();
     let mut drawn = Drawn::open()?;
-    if matches!(drawn, Drawn::Exact) {}
     // What every cell of a look or a scene shares is told once.
     let mut told: Vec<String> = Vec::new();
     for name in &scene_names {

@@ -396,6 +396,7 @@ impl Visibility {
     }
 
     /// Counts or writes the layers of all objects within some rows of the picture, in front of what is opaque.
+    #[allow(clippy::too_many_arguments)]
     pub fn draw_layers(
         &self,
         encoder: &mut wgpu::CommandEncoder,
