@@ -352,7 +352,7 @@ impl Engine {
     /// # Errors
     /// As [`Engine::draw`].
     pub fn aovs(&mut self, request: &Request) -> Result<AovImage, GpuError> {
-        let Aovs { geometry, mut ids, color, found } =
+        let Aovs { geometry, mut ids, color, found, layer_count } =
             self.with_input(request, |renderer, input| renderer.render_aovs(input))?;
         // Outlines are lines, not surfaces: they have no depth and no id.
         for (id, p) in ids.iter_mut().zip(geometry.chunks_exact(4)) {
@@ -372,7 +372,7 @@ impl Engine {
                 _ => {}
             }
         }
-        Ok(AovImage { size: request.size, depth, normal, ids, color, ao, coc })
+        Ok(AovImage { size: request.size, depth, normal, ids, color, ao, coc, layer_count })
     }
 
     fn with_input<T>(

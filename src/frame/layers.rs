@@ -11,7 +11,7 @@ use super::objects::ObjectBuffers;
 use super::post::Finish;
 use super::shade::Shade;
 use super::visibility::{Drawn, ID_FORMAT, SceneBindings, Visibility, VisibilityKey, VisibilityPass};
-use crate::gpu::{Bound, Gpu, GpuError, KeptBindGroup, KeptBuffer, Module, PassTimer};
+use crate::gpu::{Bound, Gpu, GpuError, KeptBindGroup, KeptBuffer, Module, PassTimer, read_words};
 use crate::{gpu_struct, wgsl};
 
 /// Bytes of a fragment.
@@ -50,6 +50,8 @@ pub struct LayersPlan {
     pub write: VisibilityKey,
     /// Post effects before them.
     pub after_effects: usize,
+    /// Whether counts and ids of nearest surfaces are asked for.
+    pub for_aovs: bool,
 }
 
 /// Where the blended picture goes, and what it is blended over.
@@ -102,6 +104,8 @@ pub struct Layers {
     nearest: Option<wgpu::RenderPipeline>,
     slots: Vec<BandSlot>,
     num_totals: u64,
+    /// The counts of all bands, where AOVs ask for them.
+    all_counts: Option<wgpu::Buffer>,
 }
 
 fn storage(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
@@ -164,11 +168,22 @@ impl LayersPlan {
         let shade =
             ShadeKey { layers: Some((finish, surfaces)), hulls: false, encode: false, geometry: true, ..shade.clone() };
         let raster = |drawn| VisibilityKey { drawn, hulls: false, ..seen };
-        LayersPlan { shade, count: raster(Drawn::CountedLayers), write: raster(Drawn::WrittenLayers), after_effects }
+        LayersPlan {
+            shade,
+            count: raster(Drawn::CountedLayers),
+            write: raster(Drawn::WrittenLayers),
+            after_effects,
+            for_aovs: false,
+        }
     }
 }
 
 impl LayersPlan {
+    /// Whether ids of nearest surfaces replace those of what is opaque.
+    fn has_nearest(&self) -> bool {
+        self.for_aovs || self.leaves_surfaces()
+    }
+
     /// Whether effects follow that ask for the nearest surface.
     pub fn leaves_surfaces(&self) -> bool {
         self.shade.layers.is_some_and(|(_, surfaces)| surfaces)
@@ -181,7 +196,7 @@ impl Layers {
     /// # Errors
     /// [`GpuError::Driver`] where a shader does not compile.
     pub fn prepare(&mut self, gpu: &Gpu, shade: &Shade, plan: &LayersPlan) -> Result<(), GpuError> {
-        if let Some(layout) = shade.layers_layout().filter(|_| plan.leaves_surfaces() && self.nearest.is_none()) {
+        if let Some(layout) = shade.layers_layout().filter(|_| plan.has_nearest() && self.nearest.is_none()) {
             let entries = ["nearest_vertex", "nearest_id"];
             let targets = [ID_FORMAT.into()];
             let module = nearest_module();
@@ -349,6 +364,11 @@ impl Layers {
         timer: &mut Option<PassTimer>,
     ) -> Result<(), GpuError> {
         let bands = self.bands(gpu, visibility, shade, to)?;
+        let all_bytes = u64::from(self.size[0]) * u64::from(self.size[1]) * 4;
+        self.all_counts = plan.for_aovs.then(|| {
+            let usage = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+            gpu.empty_buffer("all layer counts", all_bytes, usage)
+        });
         let (Some(counts), Some(total), Some((readable, _)), Some((_, room))) =
             (&self.counts, &self.total, &self.readable, &self.room)
         else {
@@ -375,10 +395,15 @@ impl Layers {
             self.num_totals += 1;
             let written = raster("layers_written", plan.write);
             visibility.draw_layers(encoder, scene, objects, &written, &band.raster, rows.clone(), timer);
+            if let Some(all) = self.all_counts.as_ref().filter(|_| plan.for_aovs) {
+                let [start, length] =
+                    [rows.start, rows.end - rows.start].map(|rows| u64::from(rows * self.size[0]) * 4);
+                encoder.copy_buffer_to_buffer(counts, 0, all, start, Some(length));
+            }
             let clears = to.clears && index == 0;
             let groups = [&scene.group, shade_group, &band.blend];
             shade.draw_layers(encoder, &plan.shade, groups, pass.view, to, clears, rows.clone(), timer);
-            if let Some(nearest) = self.nearest.as_ref().filter(|_| plan.leaves_surfaces()) {
+            if let Some(nearest) = self.nearest.as_ref().filter(|_| plan.has_nearest()) {
                 let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                     label: Some("nearest layers"),
                     color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -399,6 +424,14 @@ impl Layers {
             }
         }
         Ok(())
+    }
+
+    /// Surfaces that each pixel of the last frame for AOVs has; none where nothing is transparent.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] where they cannot be read.
+    pub fn read_counts(&mut self, gpu: &Gpu) -> Result<Option<Vec<u32>>, GpuError> {
+        self.all_counts.take().map(|counts| read_words(gpu, &counts)).transpose()
     }
 
     /// Whether the pool held all fragments of the frame that was submitted last; where not, it has grown. Waits for the frame.

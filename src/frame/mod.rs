@@ -131,6 +131,8 @@ pub struct Aovs {
     pub color: Vec<f32>,
     /// What post effects found, by their places in the registry: one float a pixel, -1 where nothing is.
     pub found: Vec<(usize, Vec<f32>)>,
+    /// How many transparent surfaces each pixel has.
+    pub layer_count: Vec<u32>,
 }
 
 /// The passes of one frame and what they need, found before anything is made.
@@ -364,7 +366,10 @@ impl Renderer {
 
         // What this frame needs, and what of it is not there yet.
         let needs = self.contents.needs();
-        let plan = Plan::new(&gpu, &needs, input, self.shadow_quality);
+        let mut plan = Plan::new(&gpu, &needs, input, self.shadow_quality);
+        if let Some(layers) = &mut plan.layers {
+            layers.for_aovs = found.is_some();
+        }
         self.build(&needs, &plan, input.wide)?;
         let output_format = if input.wide { OUTPUT_16 } else { OUTPUT_8 };
         self.targets.fit(&gpu, input.drawn_size(), output_format, !plan.direct, plan.chain());
@@ -538,6 +543,8 @@ impl Renderer {
         let mut found = Vec::new();
         self.draw_frame(&single, false, &mut |_| ControlFlow::Continue(()), Some(&mut found))?;
         let gpu = Arc::clone(&self.gpu);
+        let num_pixels = input.size[0] as usize * input.size[1] as usize;
+        let layer_count = self.layers.read_counts(&gpu)?.unwrap_or_else(|| vec![0; num_pixels]);
         let (view, objects, reach) =
             (View::new(input.camera, input.size), &self.contents.objects, self.contents.reach());
         let scene = match self.contents.common() {
@@ -548,7 +555,13 @@ impl Renderer {
             None => None,
         };
         let Some(scene) = scene else {
-            return Ok(Aovs { geometry: Vec::new(), ids: Vec::new(), color: Vec::new(), found: Vec::new() });
+            return Ok(Aovs {
+                geometry: Vec::new(),
+                ids: Vec::new(),
+                color: Vec::new(),
+                found: Vec::new(),
+                layer_count: Vec::new(),
+            });
         };
         let [ids, _, _] = self.targets.views()?;
         let geometry = gpu.target("geometry", input.size, 1, aov::GEOMETRY_FORMAT);
@@ -572,6 +585,7 @@ impl Renderer {
         };
         let found = found.into_iter().map(|(effect, texture)| Ok((effect, floats(read_texture(&gpu, &texture, 4)?))));
         Ok(Aovs {
+            layer_count,
             found: found.collect::<Result<_, GpuError>>()?,
             geometry: floats(read_texture(&gpu, &geometry, 16)?),
             ids: read_texture(&gpu, self.targets.ids()?, 4)?

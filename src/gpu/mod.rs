@@ -14,6 +14,6 @@ pub use counters::Counters;
 pub use device::{Gpu, GpuError};
 pub use kept::{Bound, KeptBindGroup, KeptBuffer};
 pub use layout::{Field, GpuStruct, StructInfo};
-pub use readback::read_texture;
+pub use readback::{read_texture, read_words};
 pub use timing::{PassTimer, PassTimes};
 pub use wgsl::{Module, ShaderEdits, Wgsl};

@@ -5,6 +5,22 @@ use super::{Gpu, GpuError};
 /// The largest buffer that stays for the next read-back, in bytes: a 4K picture of 8 bits. Larger ones go at once.
 const MOST_KEPT: u64 = 48 << 20;
 
+/// Reads a whole buffer of words that can be copied from.
+///
+/// # Errors
+/// [`GpuError::Driver`] when the device cannot map the copy.
+pub fn read_words(gpu: &Gpu, from: &wgpu::Buffer) -> Result<Vec<u32>, GpuError> {
+    let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
+    let buffer = gpu.empty_buffer("readback", from.size(), usage);
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("readback") });
+    encoder.copy_buffer_to_buffer(from, 0, &buffer, 0, Some(from.size()));
+    gpu.queue.submit([encoder.finish()]);
+    buffer.map_async(wgpu::MapMode::Read, .., |_| {});
+    gpu.wait()?;
+    let mapped = buffer.get_mapped_range(..).map_err(|error| GpuError::Driver(error.to_string()))?;
+    Ok(mapped.chunks_exact(4).map(bytemuck::pod_read_unaligned).collect())
+}
+
 /// Reads a two-dimensional texture: tightly packed rows from the top, `bytes_per_pixel` each pixel.
 ///
 /// # Errors

@@ -22,17 +22,20 @@ pub enum AovName {
     Ao,
     /// Diameter of the circle of confusion in pixels, -1 where nothing is.
     Coc,
+    /// How many transparent surfaces a pixel's ray meets in front of what is opaque.
+    LayerCount,
 }
 
 impl AovName {
     /// All of them, by their names on the command line.
-    pub const ALL: [(&'static str, AovName); 6] = [
+    pub const ALL: [(&'static str, AovName); 7] = [
         ("depth", AovName::Depth),
         ("normal", AovName::Normal),
         ("id", AovName::Id),
         ("color", AovName::Color),
         ("ao", AovName::Ao),
         ("coc", AovName::Coc),
+        ("layer_count", AovName::LayerCount),
     ];
 }
 
@@ -53,6 +56,8 @@ pub struct AovImage {
     pub ao: Vec<f32>,
     /// Diameter of the circle of confusion in pixels, -1 where nothing is.
     pub coc: Vec<f32>,
+    /// How many transparent surfaces a pixel's ray meets in front of what is opaque.
+    pub layer_count: Vec<u32>,
 }
 
 impl AovImage {
@@ -73,6 +78,7 @@ impl AovImage {
                 .collect(),
             AovName::Ao => vec![AnyChannel::new("Y", plane(&self.ao, 1, 0))],
             AovName::Coc => vec![AnyChannel::new("Y", plane(&self.coc, 1, 0))],
+            AovName::LayerCount => vec![AnyChannel::new("Y", FlatSamples::U32(self.layer_count.clone()))],
             AovName::Id => vec![AnyChannel::new("id", FlatSamples::U32(self.ids.clone()))],
             AovName::Color => ["R", "G", "B", "A"]
                 .into_iter()

@@ -154,6 +154,26 @@ fn what_is_opaque_hides_what_is_behind_it_alone() {
 }
 
 #[test]
+fn surfaces_are_counted_and_the_nearest_is_seen() {
+    let depths = [0.7, 0.1, 0.5, 0.3, 0.9];
+    let mut nearest = None;
+    for (solid, counted) in [("none", 5), ("b3", 1), ("a4", 4)] {
+        let more = format!(r#", "mesh[part={solid}]": "solid""#);
+        let Some(mut engine) = engine(stack(&depths, 1.0), style(0.3, &more, 512)) else { return };
+        let aovs = gpu::aovs(&mut engine, SIZE);
+        assert!(aovs.layer_count.iter().all(|count| *count == counted), "{solid}: {:?}", aovs.layer_count[0]);
+        // The two triangles of the second square, the nearest in all cases.
+        let mut ids = aovs.ids.clone();
+        ids.sort_unstable();
+        ids.dedup();
+        assert!(ids.len() == 2 && ids[0] >> 29 == 3 && ids[1] == ids[0] + 1, "{solid}: {ids:x?}");
+        assert_eq!(*nearest.get_or_insert(ids.clone()), ids, "{solid}");
+        let depths: Vec<f32> = aovs.depth.clone();
+        assert!(depths.iter().all(|depth| (depth - depths[0]).abs() < 1e-3), "{solid}: one square, one depth");
+    }
+}
+
+#[test]
 fn invisible_objects_are_not_there() {
     let Some(mut engine) = engine(stack(&[0.2, 0.4], 1.0), style(0.0, "", 512)) else { return };
     assert!(largest(middle(&mut engine), linear(BACKGROUND)) < 1e-4);

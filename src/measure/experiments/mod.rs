@@ -9,6 +9,7 @@ mod shading;
 mod shadows;
 mod ssao;
 mod toon_edges;
+mod transparency;
 
 use super::experiment::Experiment;
 
@@ -23,6 +24,7 @@ pub const EXPERIMENTS: &[&dyn Experiment] = &[
     &ssao::Ssao,
     &dof::Dof,
     &orbit::Orbit,
+    &transparency::Transparency,
 ];
 
 /// The experiment of this name.
