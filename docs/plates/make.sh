@@ -116,4 +116,20 @@ JSON
   convert "$work/${scene}"_row_{0,4,7,13}.png -append "$work/${scene}_together.png"
 done
 convert "$work"/{caffeine,bracket}_together.png +append -strip +dither -colors 255 png8:together.png
+
+# Glass: a housing that is seen through, atoms of glass with lines, and a protein all of glass.
+cat > "$work/housing.json" <<'JSON'
+{ "extends": "scientific", "camera": { "bgcolor": "#f2f2ee" },
+  "shaders": [{ "name": "shell", "shader": "basic", "properties": { "base_color": "material", "opacity": 0.3 } }],
+  "mapping": { "mesh[part=*ousing*]": "shell" } }
+JSON
+cat > "$work/atoms.json" <<'JSON'
+{ "extends": "scientific", "camera": { "bgcolor": "#f2f2ee" }, "geometry": { "atom": "vdw", "scale": 0.45 },
+  "shaders": [{ "name": "glass", "shader": "basic", "properties": { "opacity": 0.3 } },
+    { "name": "lines", "shader": "outlinePost", "properties": { "silhouette_width": "3pt" } }],
+  "mapping": { "atom": "glass", "post_effects": ["lines"] } }
+JSON
+"$restyle" render gearbox -s "$work/housing.json" -o "$work/glass_1.png" --size 560x420 2>/dev/null
+"$restyle" render caffeine -s "$work/atoms.json" -o "$work/glass_2.png" --size 420x420 2>/dev/null
+convert "$work"/glass_{1,2}.png +append -strip +dither -colors 255 png8:glass.png
 ls -l -- *.png

@@ -5,7 +5,7 @@ use super::values::Values;
 
 /// The keys of `transparency`.
 pub const PARAMS: &[Param] = &[
-    Param::choice("method", &["auto", "bkb", "exact"], "auto")
+    Param::choice("method", &["auto", "packed", "bkb"], "auto")
         .not_drawn_yet()
         .doc("auto takes the cheapest that is right for the scene."),
     Param::count("k", 8)
@@ -25,10 +25,10 @@ pub const PARAMS: &[Param] = &[
 pub enum TransparencyMethod {
     /// What is cheapest and right for the scene.
     Auto,
+    /// All fragments, sorted.
+    Packed,
     /// Bucketed k-buffer.
     Bkb,
-    /// All fragments, sorted.
-    Exact,
 }
 
 /// The transparency of a style.
@@ -45,7 +45,7 @@ pub struct Transparency {
 impl Transparency {
     /// The transparency that the values of [`PARAMS`] describe.
     pub fn new(values: &Values) -> Self {
-        let methods = [TransparencyMethod::Auto, TransparencyMethod::Bkb, TransparencyMethod::Exact];
+        let methods = [TransparencyMethod::Auto, TransparencyMethod::Packed, TransparencyMethod::Bkb];
         Self {
             method: methods[values.choice_index("method")],
             k: values.count("k"),

@@ -26,6 +26,8 @@ pub struct ObjectKey {
     assignment: Arc<Assignment>,
     geometry: Geometry,
     schemes: Vec<BaseColor>,
+    /// Whether each shader hides what is within its objects.
+    opaque: Vec<bool>,
     /// Selectors of post effects, in the order of their bits.
     pub picking: Vec<Selector>,
 }
@@ -37,6 +39,7 @@ impl ObjectKey {
             assignment,
             geometry: style.geometry.clone(),
             schemes: style.shaders.iter().map(own_scheme).collect(),
+            opaque: style.shaders.iter().map(is_opaque).collect(),
             picking: picks::selectors(style).into_iter().take(MOST_PICKS).cloned().collect(),
         }
     }
@@ -146,7 +149,11 @@ fn molecule_objects(
             continue;
         }
         let order = if style.geometry.bond_orders { bond.order.clamp(1, 3) } else { 1 };
-        if order == 1 && buried(radius(a), radius(b), length, bond_radius) {
+        // What is seen through hides nothing.
+        let hides = |atom: u32| uses[atom as usize].is_some_and(|used| is_opaque(&style.shaders[used]));
+        let [hidden_a, hidden_b] =
+            [(bond.a, a), (bond.b, b)].map(|(index, atom)| if hides(index) { radius(atom) } else { 0.0 });
+        if order == 1 && buried(hidden_a, hidden_b, length, bond_radius) {
             continue;
         }
         let scheme = own_scheme(&style.shaders[used]);
@@ -267,6 +274,12 @@ fn scheme(shader: &ShaderUse) -> BaseColor {
         Some(Value::BaseColor(color)) => *color,
         _ => BaseColor::Element,
     }
+}
+
+/// Whether nothing is seen through what a shader draws.
+fn is_opaque(shader: &ShaderUse) -> bool {
+    // Post effects are in the same list and have no opacity.
+    !matches!(shader.values.get(shading::OPACITY.name), Some(Value::Number(opacity)) if *opacity < 1.0)
 }
 
 /// Where the colours of the objects themselves come from. One colour for all lies in the material, which then covers

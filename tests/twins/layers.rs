@@ -205,6 +205,25 @@ fn units_do_not_matter() {
     assert!(of_scale.all(|other| other.as_ref() == Some(&first)));
 }
 
+#[test]
+fn bonds_within_atoms_of_glass_are_drawn() {
+    let of = |opacity: f64| {
+        load(&format!(
+            r#"{{ "geometry": {{ "atom": "vdw", "scale": 1 }}, "mapping": {{ "atom": "a", "connector": "b" }},
+                "shaders": [{{ "name": "a", "shader": "basic", "properties": {{ "opacity": {opacity} }} }},
+                  {{ "name": "b", "shader": "basic" }}] }}"#
+        ))
+    };
+    let Some(mut engine) = engine(shipped("caffeine"), of(1.0)) else { return };
+    let mut drawn = |style| {
+        engine.set_style(style);
+        engine.still(&Request::new(SIZE, 1)).expect("a still");
+        engine.counts().cylinders
+    };
+    let [opaque, glass, again] = [1.0, 0.5, 1.0].map(|opacity| drawn(of(opacity)));
+    assert!(glass == 25 && opaque < glass && again == opaque, "{opaque}, {glass}, {again}");
+}
+
 /// A look of glass: all of it, or what a selector picks.
 fn glass(selector: &str, effects: &str) -> config::Style {
     let plain = if selector == "*" { "" } else { r#""*": "plain", "# };

@@ -239,5 +239,5 @@ fn every_word_of_a_choice_means_itself() {
     };
     assert_eq!(method("auto"), TransparencyMethod::Auto);
     assert_eq!(method("bkb"), TransparencyMethod::Bkb);
-    assert_eq!(method("exact"), TransparencyMethod::Exact);
+    assert_eq!(method("packed"), TransparencyMethod::Packed);
 }
