@@ -81,7 +81,6 @@ const FIRST_SHADER_BINDING: u32 = 5;
 struct ShadePipeline {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::RenderPipeline,
-    group: KeptBindGroup,
     /// When it was used last, in uses of any pipeline.
     last_use: u64,
 }
@@ -120,6 +119,8 @@ pub struct Shade {
     lights: KeptBuffer,
     output: KeptBuffer,
     shadows: KeptBuffer,
+    /// For nearest surfaces, and for layers: not one for each pipeline, which would keep targets of former sizes alive.
+    groups: [KeptBindGroup; 2],
     /// What blending layers binds.
     layers_layout: Option<wgpu::BindGroupLayout>,
 }
@@ -137,6 +138,7 @@ impl Default for Shade {
             lights: KeptBuffer::uniform("lights"),
             output: KeptBuffer::uniform("output"),
             shadows: KeptBuffer::uniform("shadows"),
+            groups: Default::default(),
             layers_layout: None,
         }
     }
@@ -236,7 +238,7 @@ impl Shade {
             multiview_mask: None,
             cache: None,
         })?;
-        Ok(ShadePipeline { layout, pipeline, group: KeptBindGroup::default(), last_use: self.uses })
+        Ok(ShadePipeline { layout, pipeline, last_use: self.uses })
     }
 
     fn layout(&self, gpu: &Gpu, key: &ShadeKey) -> wgpu::BindGroupLayout {
@@ -293,7 +295,7 @@ impl Shade {
     ) -> Result<Option<(wgpu::BindGroup, wgpu::Buffer)>, GpuError> {
         let output = self.output.set(gpu, bytemuck::bytes_of(inputs.output), 0)?;
         let lights = self.lights.set(gpu, bytemuck::bytes_of(inputs.lights), 0)?;
-        let Some(pipeline) = self.pipelines.get_mut(key) else { return Ok(None) };
+        let Some(pipeline) = self.pipelines.get(key) else { return Ok(None) };
         let mut bound = vec![
             (0, Bound::Buffer(lights)),
             (1, Bound::Buffer(output.clone())),
@@ -317,7 +319,8 @@ impl Shade {
                 binding += 1;
             }
         }
-        Ok(Some((pipeline.group.get(gpu, "shade", &pipeline.layout, bound), output)))
+        let kept = &mut self.groups[usize::from(key.layers.is_some())];
+        Ok(Some((kept.get(gpu, "shade", &pipeline.layout, bound), output)))
     }
 
     /// Shades the pixels of view `view_index` that see something. The first view clears the target to `clear`; where post
