@@ -224,7 +224,7 @@ impl Layers {
         (self.room, self.nearest) = (None, None);
     }
 
-    /// Makes the buffers fit a picture.
+    /// Makes the buffers fit a picture, with at most `limit` bytes for each.
     ///
     /// # Errors
     /// [`GpuError::TooMany`] where a row of the picture alone outgrows a binding.
@@ -270,7 +270,7 @@ impl Layers {
         [&self.counts, &self.starts, &self.pool].into_iter().flatten().map(wgpu::Buffer::size).sum()
     }
 
-    /// Fragments that the last frame had room for, and in how many bands it was drawn.
+    /// The bands of the picture, each with what its passes bind.
     fn bands(
         &mut self,
         gpu: &Gpu,
