@@ -1,6 +1,5 @@
 // The layers of a pixel over what is opaque there: its list is sorted from near to far, equal depths by their ids, and each fragment is
 // shaded from its id and blended until next to no light comes through. Nothing but the surfaces that count is ever shaded.
-// FINISH: 0 hands the colour to the next effect, 1 adds it up with the other samples', 2 writes picture values.
 
 @group(2) @binding(0) var<uniform> layers: LayerBand;
 @group(2) @binding(1) var<storage, read_write> layer_counts: array<u32>;
@@ -66,7 +65,7 @@ fn blended(position_px: vec2<f32>) -> Blended {
     if count == 0u { return result; }
     let start = layer_starts[pixel];
     // The pool is too small: it grows, and all is drawn again.
-    if start + count > layers.capacity { return result; }
+    if !fits(layers, start, count) { return result; }
     sort_layers(start, count);
     let ray = ray_at(view, position_px);
     var light = vec3<f32>(0.0);
@@ -89,15 +88,9 @@ fn blended(position_px: vec2<f32>) -> Blended {
     return result;
 }
 
-fn layers_finished(color: vec4<f32>) -> vec4<f32> {
-    if FINISH == 2u { return encode(color, output.background); }
-    if FINISH == 1u { return color * view.sample_weight; }
-    return color;
-}
-
 @fragment
 fn blend_layers(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    return layers_finished(blended(position.xy).color);
+    return finished(blended(position.xy).color);
 }
 
 @fragment

@@ -15,6 +15,6 @@ fn nearest_id(@builtin(position) position: vec4<f32>) -> @location(0) u32 {
     let at = vec2<u32>(position.xy);
     let pixel = at.y * layers.width + at.x - layers.first_pixel;
     let count = layer_counts[pixel];
-    if count == 0u || layer_starts[pixel] + count > layers.capacity { discard; }
+    if count == 0u || !fits(layers, layer_starts[pixel], count) { discard; }
     return layer_pool[layer_starts[pixel]].y;
 }

@@ -4,7 +4,7 @@
 @group(0) @binding(0) var<uniform> layers: LayerBand;
 @group(0) @binding(1) var<storage, read_write> layer_counts: array<u32>;
 @group(0) @binding(2) var<storage, read_write> layer_starts: array<u32>;
-// Fragments in all.
+// Fragments in all, and 1 where they are more than a word counts.
 @group(0) @binding(3) var<storage, read_write> layer_total: array<atomic<u32>>;
 
 const RUN: u32 = 32u;
@@ -17,6 +17,7 @@ fn make_room(@builtin(global_invocation_id) invocation: vec3<u32>) {
     for (var pixel = first; pixel < end; pixel++) { sum += layer_counts[pixel]; }
     if sum == 0u { return; }
     var start = atomicAdd(&layer_total[0], sum);
+    if start > 0xffffffffu - sum { atomicMax(&layer_total[1], 1u); }
     for (var pixel = first; pixel < end; pixel++) {
         let count = layer_counts[pixel];
         layer_starts[pixel] = start;

@@ -16,7 +16,7 @@ fn add_layer(position_px: vec2<f32>, id: u32, t: f32) {
     let pixel = u32(at.y) * layers.width + u32(at.x) - layers.first_pixel;
     let index = atomicAdd(&layer_counts[pixel], 1u);
     if WRITES {
-        let slot = layer_starts[pixel] + index;
-        if slot < layers.capacity { layer_pool[slot] = vec2<u32>(bitcast<u32>(t), id); }
+        let start = layer_starts[pixel];
+        if fits(layers, start, index + 1u) { layer_pool[start + index] = vec2<u32>(bitcast<u32>(t), id); }
     }
 }

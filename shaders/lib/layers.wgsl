@@ -10,3 +10,8 @@ struct LayerBand {
     // Fragments that the pool holds.
     capacity: u32,
 }
+
+// Whether a list lies within the pool; starts beyond it may be as large as words are.
+fn fits(layers: LayerBand, start: u32, count: u32) -> bool {
+    return count <= layers.capacity && start <= layers.capacity - count;
+}

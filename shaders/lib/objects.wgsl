@@ -36,15 +36,6 @@ struct Material {
     index: u32,
 }
 
-// What of the objects a pass draws, DRAWN of each pipeline.
-const DRAWN_ALL: u32 = 0u;
-const DRAWN_OPAQUE: u32 = 1u;
-const DRAWN_LAYERS: u32 = 2u;
-
-fn is_layered(opacity: f32) -> bool {
-    return opacity < 1.0;
-}
-
 fn atom_at(index: u32) -> Atom {
     let place = object_texel(atoms, 2u * index);
     let look = object_texel(atoms, 2u * index + 1u);

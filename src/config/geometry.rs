@@ -12,7 +12,7 @@ pub const PARAMS: &[Param] = &[
     Param::number("scale", 0.25)
         .range(0.001, 100.0)
         .doc("Atoms are drawn this many times their radius.")
-        .examples(&["0.12", "0.25", "0.5", "1"]),
+        .examples(&["0.12", "0.25", "1"]),
     Param::length("bond_radius", "0.14A").doc("Radius of connectors.").examples(&[
         r#""0.05A""#,
         r#""0.14A""#,

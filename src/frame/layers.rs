@@ -14,6 +14,8 @@ use super::visibility::{Drawn, ID_FORMAT, SceneBindings, Visibility, VisibilityK
 use crate::gpu::{Bound, Gpu, GpuError, KeptBindGroup, KeptBuffer, Module, PassTimer, read_words};
 use crate::{gpu_struct, wgsl};
 
+/// Bytes of what a band tells: its fragments, and whether they are more than that word counts.
+const TOTAL_BYTES: u64 = 8;
 /// Bytes of a fragment.
 const FRAGMENT_BYTES: u64 = 8;
 /// Fragments for each pixel that a pool holds before more are known to be there.
@@ -125,35 +127,30 @@ fn plain(binding: u32, visibility: wgpu::ShaderStages, ty: wgpu::BindingType) ->
     wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None }
 }
 
+/// A layout of a band, its counts, starts and pool, and then textures.
+fn band_layout(gpu: &Gpu, label: &'static str, textures: &[wgpu::TextureSampleType]) -> wgpu::BindGroupLayout {
+    let stage = wgpu::ShaderStages::FRAGMENT;
+    let mut entries =
+        vec![plain(0, stage, fullscreen::UNIFORM), storage(1, stage), storage(2, stage), storage(3, stage)];
+    entries.extend((4..).zip(textures).map(|(binding, of)| plain(binding, stage, fullscreen::texture(*of))));
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
+}
+
 /// What counting and writing bind.
 pub fn raster_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let stage = wgpu::ShaderStages::FRAGMENT;
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("layers"),
-        entries: &[
-            plain(0, stage, fullscreen::UNIFORM),
-            storage(1, stage),
-            storage(2, stage),
-            storage(3, stage),
-            plain(4, stage, fullscreen::texture(wgpu::TextureSampleType::Depth)),
-        ],
-    })
+    band_layout(gpu, "layers", &[wgpu::TextureSampleType::Depth])
 }
 
 /// What blending binds beside the scene and the shading.
 pub fn blend_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let stage = wgpu::ShaderStages::FRAGMENT;
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("blend layers"),
-        entries: &[
-            plain(0, stage, fullscreen::UNIFORM),
-            storage(1, stage),
-            storage(2, stage),
-            storage(3, stage),
-            plain(4, stage, fullscreen::texture(wgpu::TextureSampleType::Float { filterable: false })),
-            plain(5, stage, fullscreen::texture(wgpu::TextureSampleType::Uint)),
-        ],
-    })
+    let types = [wgpu::TextureSampleType::Float { filterable: false }, wgpu::TextureSampleType::Uint];
+    band_layout(gpu, "blend layers", &types)
+}
+
+/// Most bytes of one buffer.
+fn most_bytes(gpu: &Gpu, memory_bytes: u64) -> u64 {
+    let limits = gpu.device.limits();
+    limits.max_storage_buffer_binding_size.min(limits.max_buffer_size).min(memory_bytes)
 }
 
 impl LayersPlan {
@@ -176,9 +173,7 @@ impl LayersPlan {
             for_aovs: false,
         }
     }
-}
 
-impl LayersPlan {
     /// Whether ids of nearest surfaces replace those of what is opaque.
     fn has_nearest(&self) -> bool {
         self.for_aovs || self.leaves_surfaces()
@@ -259,7 +254,7 @@ impl Layers {
         let totals = u64::from(samples) * u64::from(self.num_bands);
         if self.readable.as_ref().is_none_or(|(_, count)| *count < totals) {
             let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
-            self.readable = Some((gpu.empty_buffer("layer totals", totals * 4, usage), totals));
+            self.readable = Some((gpu.empty_buffer("layer totals", totals * TOTAL_BYTES, usage), totals));
         }
         self.num_totals = 0;
         gpu.check()
@@ -341,9 +336,7 @@ impl Layers {
     /// # Errors
     /// As [`Layers::prepare`], and [`GpuError::TooMany`] where nothing helps.
     pub fn begin(&mut self, gpu: &Gpu, size: [u32; 2], memory_bytes: u64, samples: u32) -> Result<(), GpuError> {
-        let limits = gpu.device.limits();
-        let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size).min(memory_bytes);
-        self.fit(gpu, size, limit, samples)
+        self.fit(gpu, size, most_bytes(gpu, memory_bytes), samples)
     }
 
     /// Draws the layers of one sample.
@@ -391,7 +384,7 @@ impl Layers {
                 let pixels = (rows.end - rows.start) * self.size[0];
                 pass.dispatch_workgroups(pixels.div_ceil(ROOM_RUN * ROOM_GROUP), 1, 1);
             }
-            encoder.copy_buffer_to_buffer(total, 0, readable, self.num_totals * 4, Some(4));
+            encoder.copy_buffer_to_buffer(total, 0, readable, self.num_totals * TOTAL_BYTES, Some(TOTAL_BYTES));
             self.num_totals += 1;
             let written = raster("layers_written", plan.write);
             visibility.draw_layers(encoder, scene, objects, &written, &band.raster, rows.clone(), timer);
@@ -440,21 +433,19 @@ impl Layers {
     /// [`GpuError::Driver`] where the totals cannot be read.
     pub fn finish(&mut self, gpu: &Gpu, memory_bytes: u64) -> Result<bool, GpuError> {
         let Some((readable, _)) = self.readable.as_ref().filter(|_| self.num_totals > 0) else { return Ok(true) };
-        let bytes = self.num_totals * 4;
+        let bytes = self.num_totals * TOTAL_BYTES;
         readable.map_async(wgpu::MapMode::Read, ..bytes, |_| {});
         gpu.wait()?;
         let needed = {
             let mapped = readable.get_mapped_range(..bytes).map_err(|error| GpuError::Driver(error.to_string()))?;
-            let totals = mapped.chunks_exact(4).map(bytemuck::pod_read_unaligned::<u32>);
-            totals.max().map_or(0, u64::from)
+            let totals = mapped.chunks_exact(TOTAL_BYTES as usize).map(bytemuck::pod_read_unaligned::<[u32; 2]>);
+            totals.map(|[total, beyond]| u64::from(if beyond == 0 { total } else { u32::MAX })).max().unwrap_or(0)
         };
         readable.unmap();
         if needed <= self.capacity {
             return Ok(true);
         }
-        let limits = gpu.device.limits();
-        let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size).min(memory_bytes);
-        let most = limit / FRAGMENT_BYTES;
+        let most = most_bytes(gpu, memory_bytes) / FRAGMENT_BYTES;
         let wanted = (needed as f64 * SLACK) as u64;
         if wanted > most {
             self.num_bands = (u64::from(self.num_bands) * wanted.div_ceil(most.max(1))).min(u64::from(u32::MAX)) as u32;

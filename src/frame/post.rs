@@ -391,6 +391,7 @@ pub fn effect_module(key: &EffectKey) -> Module {
     }
     module.add_generated("effect bindings", bindings);
     module.add(wgsl!("lib/post.wgsl"));
+    module.add(wgsl!("lib/finish.wgsl"));
     for file in effect.wgsl(key.features) {
         module.add(*file);
     }

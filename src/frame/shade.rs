@@ -501,6 +501,7 @@ pub fn shade_module(key: &ShadeKey) -> Module {
     if let Some((finish, _)) = key.layers {
         module.add(wgsl!("lib/geometry.wgsl"));
         module.add_generated("layers options", format!("const FINISH: u32 = {}u;", finish.number()));
+        module.add(wgsl!("lib/finish.wgsl"));
         module.add(wgsl!("lib/layers.wgsl"));
         module.add(wgsl!("layers/blend.wgsl"));
     } else if key.geometry {

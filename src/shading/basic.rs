@@ -13,7 +13,7 @@ use crate::{gpu_struct, wgsl};
 pub const PARAMS: &[Param] = &[
     BASE_COLOR,
     OPACITY,
-    Param::number("smoothness", 0.5).range(0.0, 1.0).doc("0 is matt, 1 a mirror.").examples(&["0", "0.5", "0.8", "1"]),
+    Param::number("smoothness", 0.5).range(0.0, 1.0).doc("0 is matt, 1 a mirror.").examples(&["0", "0.5", "1"]),
     Param::number("metallic", 0.0)
         .range(0.0, 1.0)
         .doc("0 is plastic, 1 is metal in the base colour.")

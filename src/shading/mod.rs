@@ -106,7 +106,7 @@ pub const BASE_COLOR: Param = Param::base_color("base_color", BaseColor::Element
 pub const OPACITY: Param = Param::number("opacity", 1.0)
     .range(0.0, 1.0)
     .doc("1 is opaque, 0 invisible; between them what lies behind is seen through it. Of meshes all sides count, of atoms and bonds the near one.")
-    .examples(&["0.15", "0.4", "0.75"]);
+    .examples(&["0.2", "0.5"]);
 
 /// Linear RGB of a colour.
 pub fn linear(color: Srgba) -> Vec3 {

@@ -44,10 +44,13 @@ impl Strip {
 }
 
 /// Parameters without pictures: they change nothing in a still, or no more than its noise, or only what others show is changed.
-const UNSEEN: [(&str, &str); 8] = [
+const UNSEEN: [(&str, &str); 10] = [
     ("geometry", "file_unit"),
     ("lights", "movable"),
     ("transparency", "memory_mb"),
+    // As in basic.
+    ("toon", "opacity"),
+    ("unlit", "opacity"),
     ("ssaoPost", "samples"),
     ("ssaoPost", "blur"),
     ("ssaoPost", "applies_to"),

@@ -33,7 +33,7 @@ struct Kind {
     effect: &'static str,
     properties: &'static str,
     form: Option<EffectForm>,
-    /// Truths of one name are one.
+    /// Which of [`TRUTHS`] it is held against.
     truth: usize,
 }
 

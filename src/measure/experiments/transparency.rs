@@ -29,13 +29,20 @@ struct Stand {
     name: &'static str,
     load: fn() -> Result<Scene, MeasureError>,
     camera: &'static str,
+    /// Radii of atoms over those of van der Waals.
+    scale: f64,
 }
 
 const STANDS: [Stand; 4] = [
-    Stand { name: "32 squares", load: squares, camera: r#""orthographic": true, "position": [0, 0, 1], "zoom": 2.5"# },
-    Stand { name: "assembly", load: || shipped_scene("gearbox"), camera: r#""zoom": 1.2"# },
-    Stand { name: "molecule", load: || shipped_scene("nanotube"), camera: r#""zoom": 1.2"# },
-    Stand { name: "ball and stick", load: || shipped_scene("c60"), camera: r#""zoom": 1.2"# },
+    Stand {
+        name: "32 squares",
+        load: squares,
+        camera: r#""orthographic": true, "position": [0, 0, 1], "zoom": 2.5"#,
+        scale: 1.0,
+    },
+    Stand { name: "assembly", load: || shipped_scene("gearbox"), camera: r#""zoom": 1.2"#, scale: 0.3 },
+    Stand { name: "molecule", load: || shipped_scene("nanotube"), camera: r#""zoom": 1.2"#, scale: 1.0 },
+    Stand { name: "ball and stick", load: || shipped_scene("c60"), camera: r#""zoom": 1.2"#, scale: 0.3 },
 ];
 
 /// The experiment.
@@ -63,8 +70,7 @@ fn look(stand: &Stand, opacity: f64) -> Result<Look, MeasureError> {
               "mapping": {{ "*": "glass", "mesh[part=part0]": "other", "atom": "other" }},
               "shaders": [{{ "name": "glass", "shader": "unlit", "properties": {{ "base_color": "#2060d0", "opacity": {opacity} }} }},
                 {{ "name": "other", "shader": "unlit", "properties": {{ "base_color": "#d05020", "opacity": {opacity} }} }}] }}"##,
-        stand.camera,
-        if stand.name == "molecule" { 1.0 } else { 0.3 }
+        stand.camera, stand.scale
     );
     Look::of_text(&format!("{} {opacity}", stand.name), &text)
 }
