@@ -2,8 +2,11 @@
 //!
 //! Cost: 20 bytes per vertex (24 with colours), 12 per triangle, some 100 per part.
 
+use std::sync::OnceLock;
+
 use glam::{Affine3A, DVec3, Vec3};
 
+use super::curvature::Bending;
 use crate::scene::Sphere;
 
 /// What a file says of a surface.
@@ -39,9 +42,16 @@ pub struct Shape {
     pub sphere: Sphere,
     /// How thick it is on average: the mean length of lines within it. Infinite where it does not enclose a volume.
     pub thickness: f32,
+    /// See [`Shape::bending`].
+    pub(super) bending: OnceLock<Bending>,
 }
 
 impl Shape {
+    /// How it bends, found when it is asked for first.
+    pub fn bending(&self) -> &Bending {
+        self.bending.get_or_init(|| Bending::new(self))
+    }
+
     /// The mean length of all lines through a closed surface, which is four times its volume over its area (Cauchy).
     /// Infinite of an open one.
     pub(super) fn mean_chord(&self) -> f32 {

@@ -11,6 +11,7 @@ mod assembly;
 mod build;
 #[cfg(test)]
 mod build_tests;
+pub mod curvature;
 mod hull;
 mod links;
 mod mend;
