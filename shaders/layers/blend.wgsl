@@ -74,9 +74,9 @@ fn blended(position_px: vec2<f32>) -> Blended {
         let id = layer_pool[start + index].y;
         let s = surface_at(ray, id);
         let material = material_of(id);
-        let opacity = materials[material].opacity;
-        light += open * opacity * shade_object(s, material);
-        open *= 1.0 - opacity;
+        let drawn = shade_layer(s, material);
+        light += open * drawn.a * drawn.rgb;
+        open *= 1.0 - drawn.a;
         if index == 0u {
             let depth = -s.position_view.z;
             let bend_px = s.bend * pixel_world(view, depth);

@@ -13,7 +13,8 @@ struct MeshVertex {
     color: u32,
     // Which part of its run.
     part: u32,
-    _pad0: u32,
+    // Sum of the principal curvatures, negative where convex, over units of the shape; 0 unless a style asks.
+    kappa: f32,
 }
 
 struct MeshPart {
@@ -40,11 +41,14 @@ struct MeshRun {
 }
 
 const MESH_PAGE_BITS: u32 = 8u;
+// A triangle's last word: its part, and above it its creases.
+const MESH_CREASE_SHIFT: u32 = 26u;
+const MESH_PART_MASK: u32 = 0x03ffffffu;
 
 fn mesh_vertex_at(index: u32) -> MeshVertex {
     let place = object_texel(mesh_vertices, 2u * index);
     let look = object_texel(mesh_vertices, 2u * index + 1u);
-    return MeshVertex(bitcast<vec3<f32>>(place.xyz), place.w, look.x, look.y, look.z, look.w);
+    return MeshVertex(bitcast<vec3<f32>>(place.xyz), place.w, look.x, look.y, look.z, bitcast<f32>(look.w));
 }
 
 fn mesh_part_at(index: u32) -> MeshPart {
@@ -60,17 +64,19 @@ fn mesh_run_at(index: u32) -> MeshRun {
     return MeshRun(run.x, run.y, run.z, run.w);
 }
 
-// The vertices of the triangle that the index of an id names, and its part.
+// The vertices of the triangle that the index of an id names, its part, and its creases:
+// a bit for each edge that is one, and above them a bit for each corner on one.
 struct MeshCorners {
     vertices: vec3<u32>,
     part: u32,
+    creases: u32,
 }
 
 fn mesh_corners(index: u32) -> MeshCorners {
     let page = index >> MESH_PAGE_BITS;
     let run = mesh_run_at(object_texel(mesh_pages, page >> 2u)[page & 3u]);
     let triangle = object_texel(mesh_triangles, run.first_triangle + index - run.first_id);
-    return MeshCorners(triangle.xyz, run.first_part + triangle.w);
+    return MeshCorners(triangle.xyz, run.first_part + (triangle.w & MESH_PART_MASK), triangle.w >> MESH_CREASE_SHIFT);
 }
 
 fn mesh_material(index: u32) -> u32 {
@@ -118,86 +124,4 @@ fn unpack_vertex_color(bits: u32) -> vec3<f32> {
     let color = unpack4x8unorm(bits);
     if color.a == 0.0 { return vec3<f32>(1.0); }
     return vec3<f32>(linear_from_srgb(color.r), linear_from_srgb(color.g), linear_from_srgb(color.b));
-}
-
-// A point of a triangle, in view space.
-struct MeshPoint {
-    t: f32,
-    part: u32,
-    // Unit, interpolated between the vertices, turned to the viewer.
-    normal: vec3<f32>,
-    // Unit, of the triangle itself, turned to the viewer.
-    facet: vec3<f32>,
-    base_color: vec3<f32>,
-    // Change of the normal for a step along the triangle's plane: dot with the step gives the shares of the two edges.
-    share_b: vec3<f32>,
-    share_c: vec3<f32>,
-    normal_b: vec3<f32>,
-    normal_c: vec3<f32>,
-}
-
-// The triangle that the index of an id names, where a ray meets it. On its border and on edges seen from the side the ray
-// may round to a miss: the nearest point of the triangle is then within rounding of the surface.
-fn mesh_point(ray: Ray, index: u32) -> MeshPoint {
-    let corners = mesh_corners(index);
-    let part = mesh_part_at(corners.part);
-    let va = mesh_vertex_at(corners.vertices.x);
-    let vb = mesh_vertex_at(corners.vertices.y);
-    let vc = mesh_vertex_at(corners.vertices.z);
-    let a = to_view(view, mesh_to_world(part, va.position));
-    let along_b = to_view(view, mesh_to_world(part, vb.position)) - a;
-    let along_c = to_view(view, mesh_to_world(part, vc.position)) - a;
-    // In units of the longer edge, so that squares of squares neither vanish nor overflow.
-    let scale = 1.0 / max(max(length(along_b), length(along_c)), 1e-30);
-    let b = along_b * scale;
-    let c = along_c * scale;
-    let across = cross(b, c);
-    let area_squared = max(dot(across, across), 1e-30);
-    let from_a = (ray.origin - a) * scale;
-    // [Moller1997 §2]
-    let facing = dot(ray.direction, across);
-    let inverse = 1.0 / select(min(facing, -1e-20), max(facing, 1e-20), facing >= 0.0);
-    let around = cross(from_a, ray.direction);
-    var share_b = clamp(-dot(around, c) * inverse, 0.0, 1.0);
-    var share_c = clamp(dot(around, b) * inverse, 0.0, 1.0);
-    let sum = max(share_b + share_c, 1.0);
-    share_b /= sum;
-    share_c /= sum;
-
-    var point: MeshPoint;
-    point.part = corners.part;
-    point.t = -(a.z + share_b * along_b.z + share_c * along_c.z);
-    let to_view_normal = mat3x3<f32>(view.view_from_world[0].xyz, view.view_from_world[1].xyz, view.view_from_world[2].xyz);
-    let na = to_view_normal * normalize(mesh_normal_to_world(part, unpack_normal(va.normal)));
-    let nb = to_view_normal * normalize(mesh_normal_to_world(part, unpack_normal(vb.normal)));
-    let nc = to_view_normal * normalize(mesh_normal_to_world(part, unpack_normal(vc.normal)));
-    let mixed = na + share_b * (nb - na) + share_c * (nc - na);
-    let inverse_length = inverseSqrt(max(dot(mixed, mixed), 1e-12));
-    // To the side of the triangle that is seen.
-    let outwards = select(across, -across, facing > 0.0);
-    point.facet = outwards * inverseSqrt(area_squared);
-    let turned = select(inverse_length, -inverse_length, dot(mixed, outwards) < 0.0);
-    point.normal = mixed * turned;
-    // An interpolated normal may lean away where the triangle does not: it is then seen from the side.
-    let away = dot(point.normal, ray.direction);
-    if away > 0.0 {
-        point.normal = normalize(point.normal - ray.direction * (away * 1.001 / dot(ray.direction, ray.direction)));
-    }
-    point.normal_b = (nb - na) * turned;
-    point.normal_c = (nc - na) * turned;
-    point.share_b = cross(c, across) * (scale / area_squared);
-    point.share_c = cross(across, b) * (scale / area_squared);
-    point.base_color = unpack_linear(part.color);
-    if (part.color.y & 0x10000u) != 0u {
-        let ca = unpack_vertex_color(va.color);
-        point.base_color *= ca + share_b * (unpack_vertex_color(vb.color) - ca)
-            + share_c * (unpack_vertex_color(vc.color) - ca);
-    }
-    return point;
-}
-
-// Change of the unit normal for a step along the triangle's plane.
-fn mesh_normal_step(point: MeshPoint, step: vec3<f32>) -> vec3<f32> {
-    let change = point.normal_b * dot(point.share_b, step) + point.normal_c * dot(point.share_c, step);
-    return change - point.normal * dot(point.normal, change);
 }

@@ -34,6 +34,11 @@ struct Material {
     // Which object shader, by its place in the registry, and which of its parameter sets.
     shader: u32,
     index: u32,
+    // The shader that stylises its light by curvature, by one more than its place in the registry, 0 for none; and which set.
+    stylist: u32,
+    stylist_index: u32,
+    _pad0: u32,
+    _pad1: u32,
 }
 
 fn atom_at(index: u32) -> Atom {

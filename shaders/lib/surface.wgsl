@@ -25,7 +25,14 @@ struct Surface {
     // The object itself: of a triangle its part, where `id` is the triangle's.
     object: u32,
     id: u32,
+    // Sum of the principal curvatures as it is seen, negative where convex, over scene units. With CURVATURE alone, as what follows.
+    kappa: f32,
+    // How far the nearest silhouette or crease is in the picture, in samples' footprints.
+    rim_steps: f32,
 }
+
+// Farther than any rim reaches.
+const FAR_STEPS: f32 = 1e9;
 
 // Where a point moves on the tangent plane when its ray moves by `step` [Igehy1999 §3.1].
 // On the outline that is infinitely far, yet within a pixel p of it a surface of curvature k turns by
@@ -35,6 +42,21 @@ fn tangent_step(ray: Ray, t: f32, normal: vec3<f32>, bend: f32, step: vec3<f32>,
     let least = max(sqrt(0.5 * bend * length(moved)), 1e-4);
     let facing = dot(normal, ray.direction);
     return moved - ray.direction * (dot(normal, moved) / min(facing, -least));
+}
+
+// How fast the cosine between surface and view changes for a step to the right and down.
+fn facing_step(s: Surface) -> vec2<f32> {
+    return vec2<f32>(
+        dot(s.normal_dx, s.to_viewer) + dot(s.normal_view, s.to_viewer_dx),
+        dot(s.normal_dy, s.to_viewer) + dot(s.normal_view, s.to_viewer_dy),
+    );
+}
+
+// How far the silhouette of a smooth surface is in the picture, in samples' footprints: near it the cosine goes as the root of
+// the distance (ours).
+fn silhouette_steps(s: Surface) -> f32 {
+    let facing = dot(s.normal_view, s.to_viewer);
+    return min(0.5 * facing / max(length(facing_step(s)), 1e-12), FAR_STEPS);
 }
 
 fn to_viewer_step(ray: Ray, step: vec3<f32>, orthographic: f32) -> vec3<f32> {
@@ -115,5 +137,14 @@ fn surface_at(ray: Ray, id: u32) -> Surface {
     }
     s.to_viewer_dx = to_viewer_step(ray, dx, view.orthographic);
     s.to_viewer_dy = to_viewer_step(ray, dy, view.orthographic);
+    if CURVATURE {
+        // A sphere bends both ways; what is seen from inside is hollow.
+        s.kappa = -turned * bend * select(1.0, 2.0, ATOMS && (id >> 29u) == KIND_ATOM);
+        s.rim_steps = silhouette_steps(s);
+        if MESHES && is_mesh {
+            s.kappa = mesh.kappa;
+            s.rim_steps = min(s.rim_steps, mesh_crease_steps(mesh, s.position_dx, s.position_dy));
+        }
+    }
     return s;
 }

@@ -1,4 +1,4 @@
-// Geometry of the nearest surface at each pixel's centre: view-space normal, depth and id.
+// Geometry of the nearest surface at each pixel's centre: view-space normal and depth, and curvature.
 // Depth is -z_view in scene units, -1 where nothing is.
 
 @group(0) @binding(0) var<uniform> view: View;
@@ -16,12 +16,17 @@ fn aov_vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32
     return vec4<f32>(f32(corner & 1u) * 4.0 - 1.0, f32(corner >> 1u) * 4.0 - 1.0, 0.5, 1.0);
 }
 
+struct Found {
+    @location(0) geometry: vec4<f32>,
+    @location(1) kappa: f32,
+}
+
 @fragment
-fn aov_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+fn aov_fragment(@builtin(position) position: vec4<f32>) -> Found {
     let id = textureLoad(visibility, vec2<i32>(position.xy), 0).x;
     if id == 0u || (id >> 29u) > KIND_LAST_SURFACE {
-        return vec4<f32>(0.0, 0.0, 0.0, -1.0);
+        return Found(vec4<f32>(0.0, 0.0, 0.0, -1.0), 0.0);
     }
     let s = surface_at(ray_at(view, position.xy), id);
-    return vec4<f32>(s.normal_view, -s.position_view.z);
+    return Found(vec4<f32>(s.normal_view, -s.position_view.z), s.kappa);
 }

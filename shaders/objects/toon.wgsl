@@ -99,9 +99,7 @@ fn toon_shade(s: Surface, m: ToonMaterial) -> vec3<f32> {
     }
     if TOON_OUTLINE && m.outline_bias > 0.0 {
         let facing = dot(s.normal_view, s.to_viewer);
-        let facing_dx = dot(s.normal_dx, s.to_viewer) + dot(s.normal_view, s.to_viewer_dx);
-        let facing_dy = dot(s.normal_dy, s.to_viewer) + dot(s.normal_view, s.to_viewer_dy);
-        color = mix(m.color.rgb, color, covered(facing - m.outline_bias, vec2<f32>(facing_dx, facing_dy)));
+        color = mix(m.color.rgb, color, covered(facing - m.outline_bias, facing_step(s)));
     }
     return color;
 }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use super::bending;
 use super::palette::{AtomColors, PartColors};
 use super::picks::{self, Picks};
 use crate::config::{AtomRadius, BaseColor, Geometry, Origin, Selector, ShaderUse, Style, Value, Values};
@@ -28,18 +29,21 @@ pub struct ObjectKey {
     schemes: Vec<BaseColor>,
     /// Whether each shader hides what is within its objects.
     opaque: Vec<bool>,
+    /// Whether something asks how surfaces bend.
+    bent: bool,
     /// Selectors of post effects, in the order of their bits.
     pub picking: Vec<Selector>,
 }
 
 impl ObjectKey {
-    /// The key of a style, of which the rules come to `assignment`.
-    pub fn new(style: &Style, assignment: Arc<Assignment>) -> ObjectKey {
+    /// The key of a style, of which the rules come to `assignment`; `bent` asks how surfaces bend.
+    pub fn new(style: &Style, assignment: Arc<Assignment>, bent: bool) -> ObjectKey {
         ObjectKey {
             assignment,
             geometry: style.geometry.clone(),
             schemes: style.shaders.iter().map(own_scheme).collect(),
             opaque: style.shaders.iter().map(is_opaque).collect(),
+            bent,
             picking: picks::selectors(style).into_iter().take(MOST_PICKS).cloned().collect(),
         }
     }
@@ -53,6 +57,8 @@ pub struct Objects {
     pub materials: Vec<MaterialUse>,
     /// Lengths, with the median radius of the drawn atoms.
     pub lengths: Lengths,
+    /// How strongly curvature is read unless a style says.
+    pub gain: f32,
 }
 
 /// A shader of the style, with what a file says of the surface where that counts.
@@ -67,15 +73,19 @@ pub struct MaterialUse {
 /// Steps in which a file's finish is kept: finer than is seen, and coarse enough that parts share materials.
 const FINISH_STEPS: f32 = 64.0;
 
-/// Makes every object of the scene that the style draws; `assignment` is what the style's rules come to, and `picks` what the
-/// selectors of its post effects do.
-pub fn objects(scene: &Arc<Scene>, style: &Style, assignment: &Assignment, picks: &Picks) -> Objects {
+/// Makes every object of the scene that the style draws; `assignment` is what the style's rules come to, `picks` what the
+/// selectors of its post effects do, and `bent` asks how surfaces bend.
+pub fn objects(scene: &Arc<Scene>, style: &Style, assignment: &Assignment, picks: &Picks, bent: bool) -> Objects {
     // A scene of huge or tiny meshes has a unit of its own.
     let lengths = |median| Lengths::of_scene(scene, &style.geometry, median);
     let (mut objects, mut materials) =
         molecule_objects(&scene.molecule, scene.unit, style, assignment, picks, &lengths);
     if !scene.assembly.is_empty() {
         add_parts(&mut objects.list, &mut materials, scene, style, assignment, picks);
+    }
+    if bent {
+        objects.list.bent = true;
+        objects.gain = bending::default_gain(&objects.list, lengths(None).radius);
     }
     Objects { materials: materials.used, ..objects }
 }
@@ -174,7 +184,7 @@ fn molecule_objects(
     if is_copied {
         place_copies(&mut list, &atom_of, &bond_of, &molecule.copies);
     }
-    (Objects { list, materials: Vec::new(), lengths }, materials)
+    (Objects { list, materials: Vec::new(), lengths, gain: 1.0 }, materials)
 }
 
 /// The objects of a molecule that stands alone.
@@ -278,8 +288,13 @@ fn scheme(shader: &ShaderUse) -> BaseColor {
 
 /// Whether nothing is seen through what a shader draws.
 fn is_opaque(shader: &ShaderUse) -> bool {
-    // Post effects are in the same list and have no opacity.
-    !matches!(shader.values.get(shading::OPACITY.name), Some(Value::Number(opacity)) if *opacity < 1.0)
+    // Post effects are in the same list and are no shaders of objects.
+    shading::shader_index(shader.shader).is_none_or(|index| !SHADERS[index].is_layered(&shader.values))
+}
+
+/// Whether a style asks how surfaces bend.
+pub fn asks_for_bending(style: &Style) -> bool {
+    style.shaders.iter().filter_map(|shader| shading::shader_index(shader.shader)).any(|index| SHADERS[index].stylises())
 }
 
 /// Where the colours of the objects themselves come from. One colour for all lies in the material, which then covers
@@ -370,15 +385,15 @@ impl MaterialNumbers {
     }
 }
 
-/// The materials of what is `used`, by number. `height_px` is the picture's, for lengths in points.
+/// Opacity below which materials are drawn in layers, or the next number below.
+const MOST_OF_A_LAYER: f32 = 1.0 - f32::EPSILON / 2.0;
+
+/// The materials of what is `used`, by number.
 pub fn materials(
     style: &Style,
     used: &[MaterialUse],
-    exposure_factor: f32,
-    lengths: &Lengths,
-    height_px: u32,
+    context: &MaterialContext<'_>,
 ) -> Materials {
-    let context = MaterialContext { exposure_factor };
     let mut materials = Materials::default();
     for of in used {
         let shader_use = &style.shaders[of.shader];
@@ -386,25 +401,33 @@ pub fn materials(
         // The loader accepts only names of the registry.
         let shader_index = shading::shader_index(shader_use.shader).unwrap_or(0);
         let shader = SHADERS[shader_index];
-        let bytes = shader.material(&values, &context);
-        let params = materials.params.entry(shader_index).or_default();
-        *materials.features.entry(shader_index).or_default() |= shader.features_used(&shader_use.values);
-        let params_index = params.len() / bytes.len().max(1);
-        params.extend_from_slice(&bytes);
+        let set = materials.add(shader_index, &values, context);
+        // A shader that stylises the light of another one has a set of that one's parameters as well.
+        let lit_by = shader.lit_by(&values).and_then(shading::shader_index);
+        let lit = lit_by.map(|lit_by| (lit_by, materials.add(lit_by, &values.taken_by(SHADERS[lit_by].params()), context)));
+        let (shade_shader, shade_index) = lit.unwrap_or((shader_index, set));
+        let (stylist, stylist_index) = lit.map_or((0, 0), |_| (shader_index as u32 + 1, set));
+        // What is blended in layers although it may cover all covers next to all.
+        let opacity = values.number(shading::OPACITY.name) as f32;
+        let opacity = if shader.is_layered(&values) { opacity.min(MOST_OF_A_LAYER) } else { opacity };
         let base_color = match scheme(shader_use) {
             BaseColor::Color(color) => shading::linear(color).extend(1.0).to_array(),
             _ => [0.0; 4],
         };
         let hull = shader.hull(&shader_use.values);
-        let (hull_px, hull_world) = hull.map_or((0.0, 0.0), |hull| lengths.screen(hull.width, height_px));
+        let (hull_px, hull_world) = hull.map_or((0.0, 0.0), |hull| (context.screen)(hull.width));
         materials.common.push(Material {
             base_color,
             hull_color: hull.map_or([0.0; 3], |hull| hull.color.to_array()),
-            opacity: values.number("opacity") as f32,
+            opacity,
             hull_px: hull_px as f32,
             hull_world: hull_world as f32,
-            shader: shader_index as u32,
-            index: params_index as u32,
+            shader: shade_shader as u32,
+            index: shade_index,
+            stylist,
+            stylist_index,
+            _pad0: 0,
+            _pad1: 0,
         });
     }
     materials

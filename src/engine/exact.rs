@@ -17,7 +17,8 @@ use crate::reference::{
     Settings, Shade, Sphere, World,
 };
 use crate::scene::{Camera, Image, Pixels, Scene, srgb_from_linear};
-use crate::shading::{SHADERS, basic::BasicMaterial, toon::ToonMaterial};
+use crate::reference::curvature::Stylist;
+use crate::shading::{SHADERS, basic::BasicMaterial, curvature::CurvatureMaterial, toon::ToonMaterial};
 
 /// Draws stills of one scene in one style, on all cores.
 pub struct Exact {
@@ -93,7 +94,8 @@ impl Exact {
         let mut lighting = drawn.lighting.lighting(&camera);
         lighting.lights.truncate(MAX_LIGHTS);
         let optics = Optics::new(&camera, request.size);
-        let materials = shades(&materials, &content.style, &drawn.used);
+        let center = camera.view_from_world.as_dmat4().transform_point3(content.scene.bounding_sphere().center.as_dvec3());
+        let materials = shades(&materials, &content.style, &drawn.used, center);
         let world = world(list.unwrap_or_default(), &camera, content, &materials, &optics);
         let (mut occlusions, mut lens, mut layers, mut lines) = (Vec::new(), None, None, Vec::new());
         with_effects(content, &drawn, &camera, request, |effect, values, context| {
@@ -160,14 +162,23 @@ impl Exact {
     }
 }
 
-/// Materials as the reference shades them.
-fn shades(materials: &Materials, style: &Style, used: &[super::build::MaterialUse]) -> Vec<Material> {
+/// Materials as the reference shades them; `center` is the middle of the scene's sphere in view space.
+fn shades(materials: &Materials, style: &Style, used: &[super::build::MaterialUse], center: DVec3) -> Vec<Material> {
     let params = |shader: usize, index: u32, size: usize| {
         materials.params.get(&shader).and_then(|bytes| bytes.get(index as usize * size..(index as usize + 1) * size))
     };
     let of = |(material, used): (&crate::frame::objects::Material, &super::build::MaterialUse)| {
         let shader = material.shader as usize;
         let values = &style.shaders[used.shader].values;
+        let stylist = material.stylist.checked_sub(1).and_then(|stylist| {
+            let bytes = params(stylist as usize, material.stylist_index, size_of::<CurvatureMaterial>())?;
+            Some(Box::new(Stylist {
+                material: bytemuck::pod_read_unaligned(bytes),
+                opacity: values.transfer("opacity_transfer").clone(),
+                color: values.transfer("color_transfer").clone(),
+                center,
+            }))
+        });
         let shade = match SHADERS[shader].name() {
             "basic" => params(shader, material.index, size_of::<BasicMaterial>())
                 .map(|bytes| Shade::basic(&bytemuck::pod_read_unaligned(bytes))),
@@ -181,10 +192,11 @@ fn shades(materials: &Materials, style: &Style, used: &[super::build::MaterialUs
         Material {
             base_color: (covers > 0.5).then(|| Vec3::new(r, g, b).as_dvec3()),
             // What is seen through has no hull outline.
-            hull: (width.0 + width.1 > 0.0 && values.number("opacity") >= 1.0)
+            hull: (width.0 + width.1 > 0.0 && material.opacity >= 1.0)
                 .then(|| HullLook { color: Vec3::new(hull_r, hull_g, hull_b).as_dvec3(), width }),
-            opacity: values.number("opacity"),
+            opacity: values.number("opacity").min(f64::from(material.opacity)),
             shade: shade.unwrap_or(Shade::Unlit),
+            stylist,
         }
     };
     materials.common.iter().zip(used).map(of).collect()
@@ -256,7 +268,7 @@ mod tests {
     #[test]
     fn the_reference_knows_every_shader_and_effect() {
         // A new one needs its exact form in `shades` or `light_rows`.
-        assert_eq!(SHADERS.iter().map(|shader| shader.name()).collect::<Vec<_>>(), ["basic", "toon", "unlit"]);
+        assert_eq!(SHADERS.iter().map(|shader| shader.name()).collect::<Vec<_>>(), ["basic", "toon", "unlit", "curvature"]);
         assert_eq!(
             EFFECTS.iter().map(|effect| effect.name()).collect::<Vec<_>>(),
             ["ssaoPost", "outlinePost", "dofPost"]

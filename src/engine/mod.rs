@@ -1,5 +1,6 @@
 //! The engine: the three providers, the scene and the renderer. Window, headless command and tests all use it.
 
+mod bending;
 mod build;
 pub mod exact;
 pub mod lint;
@@ -25,7 +26,7 @@ use crate::frame::{self, Aovs, Effect, FrameInput, Materials, Renderer, TargetBy
 use crate::gpu::PassTimes;
 use crate::providers::{CameraProvider, Lengths, LightingProvider, ShaderProvider, picked};
 use crate::scene::{AovImage, Camera, Image, Pixels, Scene, Sphere};
-use crate::shading::SHADERS;
+use crate::shading::{MaterialContext, SHADERS};
 use build::ObjectKey;
 use live::Live;
 use picks::Picks;
@@ -36,8 +37,7 @@ pub use live::{Part, Refusal, Reload, ReloadTimes, Sources, source_tree_shaders}
 pub use tiles::TileError;
 
 /// Shaders and effects of the contract that this version names but does not draw.
-const NOT_DRAWN: [(&str, Role, &str, &[Param]); 1] =
-    [("curvature", Role::Object, "Glass that is clearer where the surface is flat.", &[])];
+const NOT_DRAWN: [(&str, Role, &str, &[Param]); 0] = [];
 
 /// Why a frame lacks an effect that its style does not ask for.
 const NOT_LISTED: &str = "post_effects does not list it";
@@ -115,12 +115,14 @@ struct Content {
     scene: Arc<Scene>,
     style: Arc<Style>,
     camera: CameraProvider,
+    /// Whether the curvature of surfaces is asked for, whatever the style does.
+    bent: bool,
 }
 
 impl Content {
     fn new(scene: Arc<Scene>, style: Arc<Style>) -> Content {
         let camera = CameraProvider::new(style.camera.clone(), &scene);
-        Content { scene, style, camera }
+        Content { scene, style, camera, bent: false }
     }
 }
 
@@ -140,6 +142,8 @@ struct Drawn {
     /// What each material is.
     used: Vec<build::MaterialUse>,
     lengths: Lengths,
+    /// How strongly curvature is read unless the style says.
+    gain: f32,
     /// The bits of the selectors of post effects that pick any object of the scene.
     picks: u32,
     /// Where that lies of which post effects need the place, by their numbers among the shaders.
@@ -352,7 +356,12 @@ impl Engine {
     /// # Errors
     /// As [`Engine::draw`].
     pub fn aovs(&mut self, request: &Request) -> Result<AovImage, GpuError> {
-        let Aovs { geometry, mut ids, color, found, layer_count } =
+        // Of shapes it is found and written where something asks.
+        if let Some(content) = self.content.as_mut().filter(|content| !content.bent) {
+            content.bent = true;
+            self.stale = true;
+        }
+        let Aovs { geometry, mut ids, color, found, layer_count, mut curvature } =
             self.with_input(request, |renderer, input| renderer.render_aovs(input))?;
         // Outlines are lines, not surfaces: they have no depth and no id.
         for (id, p) in ids.iter_mut().zip(geometry.chunks_exact(4)) {
@@ -360,6 +369,7 @@ impl Engine {
         }
         let depth = geometry.chunks_exact(4).map(|p| if p[3] < 0.0 { f32::INFINITY } else { p[3] }).collect();
         let normal = geometry.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+        curvature.iter_mut().zip(&ids).filter(|(_, id)| **id == 0).for_each(|(kappa, _)| *kappa = f32::NAN);
         // Where a frame lacks the effect, nothing is darkened, and all is sharp.
         let without = |value: f32| ids.iter().map(move |id| if *id == 0 { -1.0 } else { value }).collect::<Vec<f32>>();
         let (mut ao, mut coc) = (without(1.0), without(0.0));
@@ -372,7 +382,7 @@ impl Engine {
                 _ => {}
             }
         }
-        Ok(AovImage { size: request.size, depth, normal, ids, color, ao, coc, layer_count })
+        Ok(AovImage { size: request.size, depth, normal, ids, color, ao, coc, layer_count, curvature })
     }
 
     fn with_input<T>(
@@ -460,24 +470,32 @@ impl Engine {
 /// Finds what a scene and a style come to; `drawn` is what the renderer holds of the same scene, of which what stays the
 /// same is taken over.
 fn resolve(content: &Content, drawn: Option<&Drawn>, height_px: u32) -> Resolved {
-    let Content { scene, style, camera } = content;
+    let Content { scene, style, camera, bent } = content;
+    let bent = *bent || build::asks_for_bending(style);
     let shaders = match drawn {
         Some(drawn) => drawn.shaders.with_style(scene, style),
         None => ShaderProvider::new(scene, style),
     };
-    let key = ObjectKey::new(style, Arc::clone(shaders.assignment()));
-    let (list, used, lengths, picks) = match drawn.filter(|drawn| drawn.key == key) {
-        Some(drawn) => (None, drawn.used.clone(), drawn.lengths, drawn.picks),
+    let key = ObjectKey::new(style, Arc::clone(shaders.assignment()), bent);
+    let (list, used, lengths, gain, picks) = match drawn.filter(|drawn| drawn.key == key) {
+        Some(drawn) => (None, drawn.used.clone(), drawn.lengths, drawn.gain, drawn.picks),
         None => {
             let picks = Picks::new(scene, &key.picking);
-            let objects = build::objects(scene, style, shaders.assignment(), &picks);
-            (Some(objects.list), objects.materials, objects.lengths, picks.any())
+            let objects = build::objects(scene, style, shaders.assignment(), &picks, bent);
+            (Some(objects.list), objects.materials, objects.lengths, objects.gain, picks.any())
         }
     };
-    let materials = build::materials(style, &used, camera.exposure_factor(), &lengths, height_px);
+    let context = MaterialContext {
+        exposure_factor: camera.exposure_factor(),
+        bounds: scene.bounding_sphere(),
+        gain,
+        screen: &|length| lengths.screen(length, height_px),
+        table: 0,
+    };
+    let materials = build::materials(style, &used, &context);
     let lighting = LightingProvider::new(style.lights.clone(), scene.bounding_sphere(), lengths);
     let looked_at = looked_at(scene, style);
-    Resolved { list, materials, drawn: Drawn { shaders, key, used, lengths, picks, looked_at, lighting, height_px } }
+    Resolved { list, materials, drawn: Drawn { shaders, key, used, lengths, gain, picks, looked_at, lighting, height_px } }
 }
 
 /// Where that lies of which a post effect of the style needs the place, by the effect's number among the shaders.

@@ -1,15 +1,18 @@
-//! Geometry AOVs: depth, view-space normal and id of the nearest surface at each pixel's centre.
+//! Geometry AOVs: depth, view-space normal, id and curvature of the nearest surface at each pixel's centre.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-use super::fullscreen;
+use super::{fullscreen, mesh};
 use super::visibility::{SceneBindings, Visibility};
 use crate::gpu::{Gpu, GpuError, Module};
 use crate::wgsl;
 
 /// RGB: view-space normal. A: depth, -1 where nothing is.
 pub const GEOMETRY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
+/// Sum of the principal curvatures.
+pub const CURVATURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
 /// The pipeline of the geometry AOVs, once it is asked for.
 #[derive(Default)]
@@ -18,7 +21,7 @@ pub struct Aov {
 }
 
 impl Aov {
-    /// Draws the geometry of what `ids` holds, as the first bound view sees it. Builds the pipeline first, where it is
+    /// Draws geometry and curvature of what `ids` holds, as the first bound view sees it. Builds the pipeline first, where it is
     /// not there.
     ///
     /// # Errors
@@ -30,7 +33,7 @@ impl Aov {
         visibility: &Visibility,
         scene: &SceneBindings,
         from: &GeometrySource<'_>,
-        target: &wgpu::TextureView,
+        [geometry, curvature]: [&wgpu::TextureView; 2],
     ) -> Result<(), GpuError> {
         let (layout, pipeline) = match self.pipelines.entry((from.orthographic, from.meshes)) {
             Entry::Occupied(entry) => entry.into_mut(),
@@ -42,7 +45,7 @@ impl Aov {
                     &aov_module(from.orthographic, from.meshes),
                     ["aov_vertex", "aov_fragment"],
                     &[&visibility.layout, &layout],
-                    &[GEOMETRY_FORMAT.into()],
+                    &[GEOMETRY_FORMAT.into(), CURVATURE_FORMAT.into()],
                 )?;
                 entry.insert((layout, pipeline))
             }
@@ -50,7 +53,8 @@ impl Aov {
         let ids = wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(from.ids) };
         let group = gpu.bind_group("aov", layout, &[ids]);
         let groups: &[(&wgpu::BindGroup, &[u32])] = &[(&scene.group, &[SceneBindings::offset(0)]), (&group, &[])];
-        fullscreen::draw(encoder, "aov", pipeline, groups, target, None);
+        let clear = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
+        fullscreen::draw_onto(encoder, "aov", pipeline, groups, &[(geometry, clear), (curvature, clear)], None);
         Ok(())
     }
 }
@@ -73,13 +77,13 @@ pub fn aov_module(orthographic: bool, meshes: bool) -> Module {
         wgsl!("lib/texels.wgsl"),
         wgsl!("lib/objects.wgsl"),
         wgsl!("lib/intersect.wgsl"),
-        if meshes { wgsl!("lib/mesh.wgsl") } else { wgsl!("lib/mesh_none.wgsl") },
         wgsl!("lib/surface.wgsl"),
     ]);
+    mesh::point_files(meshes).iter().for_each(|file| module.add(*file));
     module.add_generated(
         "aov options",
         format!(
-            "const ORTHOGRAPHIC: bool = {orthographic};\nconst ATOMS: bool = true;\nconst CONNECTORS: bool = true;\nconst MESHES: bool = {meshes};"
+            "const ORTHOGRAPHIC: bool = {orthographic};\nconst ATOMS: bool = true;\nconst CONNECTORS: bool = true;\nconst MESHES: bool = {meshes};\nconst CURVATURE: bool = true;"
         ),
     );
     module.add(wgsl!("objects/aov.wgsl"));

@@ -7,8 +7,10 @@ use super::occlusion::Reach;
 use super::shade::{ShadeKey, ShaderNeeds};
 use super::shadow::ShadowFilter;
 use super::visibility::DrawnKinds;
+use super::texels::KeptTexture;
+use crate::config::Values;
 use crate::gpu::{Gpu, GpuError, KeptBuffer};
-use crate::shading::{MAX_MATERIALS, SHADERS};
+use crate::shading::{MAX_MATERIALS, MaterialContext, SHADERS};
 
 /// Materials of a style: what all share, and each shader's parameter sets.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -19,9 +21,32 @@ pub struct Materials {
     pub params: BTreeMap<usize, Vec<u8>>,
     /// Features that the materials of each shader use, one bit each.
     pub features: BTreeMap<usize, u32>,
+    /// Tables of each shader one after another, four numbers a texel.
+    pub tables: BTreeMap<usize, Vec<[f32; 4]>>,
 }
 
 impl Materials {
+    /// Adds a set of a shader's parameters and returns its number.
+    pub fn add(&mut self, shader: usize, values: &Values, context: &MaterialContext<'_>) -> u32 {
+        let registered = SHADERS[shader];
+        let table = registered.tables(values);
+        let mut first = 0;
+        if !table.is_empty() {
+            let tables = self.tables.entry(shader).or_default();
+            let known = tables.chunks_exact(table.len()).position(|known| *known == table);
+            first = known.map_or(tables.len(), |known| known * table.len());
+            if known.is_none() {
+                tables.extend(&table);
+            }
+        }
+        let bytes = registered.material(values, &MaterialContext { table: first as u32, ..*context });
+        *self.features.entry(shader).or_default() |= registered.features_used(values);
+        let sets = self.params.entry(shader).or_default();
+        let set = sets.len() / bytes.len().max(1);
+        sets.extend_from_slice(&bytes);
+        set as u32
+    }
+
     fn has_hulls(&self) -> bool {
         let Reach { px, world } = self.reach();
         px + world > 0.0
@@ -104,7 +129,10 @@ impl Needs {
             shader,
             features: materials.features.get(&shader).copied().unwrap_or(0),
             only_material: {
-                let mut using = (0..).zip(&materials.common).filter(|(_, material)| material.shader as usize == shader);
+                let uses = |material: &Material| {
+                    material.shader as usize == shader || material.stylist as usize == shader + 1
+                };
+                let mut using = (0..).zip(&materials.common).filter(|(_, material)| uses(material));
                 match (using.next(), using.next()) {
                     (Some((material, _)), None) => Some(material),
                     _ => None,
@@ -143,6 +171,8 @@ pub struct Contents {
     common: KeptBuffer,
     /// The parameter sets of each shader, by its place in the registry.
     pub params: BTreeMap<usize, KeptBuffer>,
+    /// The tables of each shader that has any.
+    pub tables: BTreeMap<usize, KeptTexture>,
 }
 
 impl Default for Contents {
@@ -153,6 +183,7 @@ impl Default for Contents {
             materials: Materials::default(),
             common: KeptBuffer::uniform("materials"),
             params: BTreeMap::new(),
+            tables: BTreeMap::new(),
         }
     }
 }
@@ -184,6 +215,10 @@ impl Contents {
         for (&shader, bytes) in &materials.params {
             let buffer = self.params.entry(shader).or_insert_with(|| KeptBuffer::uniform("parameters"));
             buffer.set(gpu, bytes, MAX_MATERIALS * SHADERS[shader].material_info().size)?;
+        }
+        for (&shader, texels) in &materials.tables {
+            let texture = self.tables.entry(shader).or_insert_with(|| KeptTexture::new("tables"));
+            texture.set(gpu, bytemuck::cast_slice(texels));
         }
         self.materials = materials;
         Ok(())

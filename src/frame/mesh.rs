@@ -11,9 +11,9 @@ use glam::Affine3A;
 
 use super::objects::PICKS_SHIFT;
 use super::texels::{self, KeptTexture, OBJECT_ROW};
-use crate::gpu::{Gpu, GpuError};
-use crate::gpu_struct;
+use crate::gpu::{Gpu, GpuError, Wgsl};
 use crate::scene::{Assembly, Scene, Shape};
+use crate::{gpu_struct, wgsl};
 
 gpu_struct! {
     "lib/mesh.wgsl",
@@ -29,8 +29,8 @@ gpu_struct! {
         pub color: u32,
         /// Which part of its run.
         pub part: u32,
-        /// Padding.
-        pub _pad0: u32,
+        /// Sum of the principal curvatures over units of the shape; 0 unless a style asks.
+        pub kappa: f32,
     }
 }
 
@@ -67,6 +67,9 @@ gpu_struct! {
         pub _pad0: u32,
     }
 }
+
+/// Where the creases of a triangle lie in the word of its part: `MESH_CREASE_SHIFT` in `shaders/lib/mesh.wgsl`.
+const CREASE_SHIFT: u32 = 26;
 
 /// The bit of a part's colour that says that the colours of its vertices count.
 pub const VERTEX_COLORS: u32 = 1 << 16;
@@ -269,6 +272,8 @@ fn is_mirrored(assembly: &Assembly, part: u32) -> bool {
 pub struct MeshBuffers {
     /// What scene the shapes are of.
     scene: Weak<Scene>,
+    /// Whether their curvature is there.
+    bent: bool,
     layout: Layout,
     vertices: KeptTexture,
     triangles: KeptTexture,
@@ -283,6 +288,7 @@ impl Default for MeshBuffers {
     fn default() -> MeshBuffers {
         MeshBuffers {
             scene: Weak::new(),
+            bent: false,
             layout: Layout::default(),
             vertices: KeptTexture::new("mesh vertices"),
             triangles: KeptTexture::new("mesh triangles"),
@@ -297,21 +303,29 @@ impl Default for MeshBuffers {
 
 impl MeshBuffers {
     /// Replaces the parts and, for another scene, the shapes. `parts` has an entry for each part of the scene, none where
-    /// it is hidden. On an error the former content stays.
+    /// it is hidden; `bent` asks for the curvature of the shapes, too. On an error the former content stays.
     ///
     /// # Errors
     /// [`GpuError::TooMany`] beyond the largest texture, or beyond the ids of 29 bits.
-    pub fn set(&mut self, gpu: &Gpu, scene: &Arc<Scene>, parts: &[Option<MeshPart>]) -> Result<(), GpuError> {
+    pub fn set(
+        &mut self,
+        gpu: &Gpu,
+        scene: &Arc<Scene>,
+        parts: &[Option<MeshPart>],
+        bent: bool,
+    ) -> Result<(), GpuError> {
         let assembly = &scene.assembly;
         check(gpu, scene, parts)?;
         let is_drawn = |part: u32| parts.get(part as usize).is_some_and(Option::is_some);
         // All that can fail comes before anything is replaced.
-        let layout = (!Weak::ptr_eq(&self.scene, &Arc::downgrade(scene))).then(|| Layout::new(assembly));
+        let is_there = Weak::ptr_eq(&self.scene, &Arc::downgrade(scene)) && (self.bent || !bent);
+        let layout = (!is_there).then(|| Layout::new(assembly));
         let draws = Draws::new(layout.as_ref().unwrap_or(&self.layout), assembly, is_drawn)?;
         if let Some(layout) = layout {
             self.draws = Draws::default();
-            self.upload(gpu, assembly, &layout);
+            self.upload(gpu, assembly, &layout, bent);
             self.layout = layout;
+            self.bent = bent;
             self.scene = Arc::downgrade(scene);
         }
         let hidden = <MeshPart as bytemuck::Zeroable>::zeroed();
@@ -338,7 +352,7 @@ impl MeshBuffers {
     }
 
     /// Writes the shapes, piece by piece, so that no second copy of them is made in memory.
-    fn upload(&mut self, gpu: &Gpu, assembly: &Assembly, layout: &Layout) {
+    fn upload(&mut self, gpu: &Gpu, assembly: &Assembly, layout: &Layout, bent: bool) {
         let mut vertices = self.vertices.writer(gpu, layout.num_vertices * 2);
         let mut triangles = self.triangles.writer(gpu, layout.num_triangles);
         let size = (layout.num_triangles * 12).max(16);
@@ -348,6 +362,7 @@ impl MeshBuffers {
             let shape = &assembly.shapes[placed.shape as usize];
             // Vertices of single places know their part; a shared shape has one part for each run.
             let part = if number < layout.num_single { placed.parts.start } else { 0 };
+            let bending = bent.then(|| shape.bending());
             for (index, position) in shape.positions.iter().enumerate() {
                 let color = shape.colors.get(index).map_or(0, |[r, g, b]| u32::from_le_bytes([*r, *g, *b, 255]));
                 vertices.push(bytemuck::bytes_of(&MeshVertex {
@@ -356,14 +371,16 @@ impl MeshBuffers {
                     hull: shape.hulls.get(index).copied().unwrap_or(0),
                     color,
                     part,
-                    _pad0: 0,
+                    kappa: bending.map_or(0.0, |bending| bending.kappa[index]),
                 }));
             }
             let mut offset = u64::from(placed.first_triangle) * 12;
+            let mut creases = bending.map(|bending| bending.creases.iter());
             for chunk in shape.triangles.chunks(TRIANGLES_AT_ONCE) {
                 let moved: Vec<[u32; 3]> = chunk.iter().map(|triangle| triangle.map(|v| v + first_vertex)).collect();
                 for [a, b, c] in &moved {
-                    triangles.push(bytemuck::bytes_of(&[*a, *b, *c, part]));
+                    let creases = creases.as_mut().and_then(Iterator::next).copied().unwrap_or(0);
+                    triangles.push(bytemuck::bytes_of(&[*a, *b, *c, part | u32::from(creases) << CREASE_SHIFT]));
                 }
                 gpu.write_buffer(&buffer, offset, bytemuck::cast_slice(&moved));
                 offset += moved.len() as u64 * 12;
@@ -403,6 +420,13 @@ impl MeshBuffers {
     pub fn num_triangles(&self) -> u64 {
         self.draws.num_triangles
     }
+}
+
+/// The WGSL of points of meshes, or what stands in for it where there are none.
+pub fn point_files(meshes: bool) -> &'static [Wgsl] {
+    const FILES: [Wgsl; 2] = [wgsl!("lib/mesh.wgsl"), wgsl!("lib/mesh_point.wgsl")];
+    const NONE: [Wgsl; 1] = [wgsl!("lib/mesh_point_none.wgsl")];
+    if meshes { &FILES } else { &NONE }
 }
 
 /// Refuses meshes that do not fit the device.

@@ -133,6 +133,8 @@ pub struct Aovs {
     pub found: Vec<(usize, Vec<f32>)>,
     /// How many transparent surfaces each pixel has.
     pub layer_count: Vec<u32>,
+    /// Sum of the principal curvatures as they are seen, negative where convex, over scene units; meaningless where nothing is.
+    pub curvature: Vec<f32>,
 }
 
 /// The passes of one frame and what they need, found before anything is made.
@@ -412,6 +414,7 @@ impl Renderer {
             visibility: &ids,
             shadows: self.maps.as_ref().map(|maps| (maps, &shadow_uniform)),
             materials: &self.contents.params,
+            tables: &self.contents.tables,
         };
         let Some((shade_group, background)) = self.shade.bind(&gpu, &plan.shade, &inputs)? else { return Ok(()) };
         let finished = light.as_ref().unwrap_or(&output);
@@ -561,18 +564,20 @@ impl Renderer {
                 color: Vec::new(),
                 found: Vec::new(),
                 layer_count: Vec::new(),
+                curvature: Vec::new(),
             });
         };
         let [ids, _, _] = self.targets.views()?;
         let geometry = gpu.target("geometry", input.size, 1, aov::GEOMETRY_FORMAT);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("aov") });
-        let target = geometry.create_view(&Default::default());
+        let curvature = gpu.target("curvature", input.size, 1, aov::CURVATURE_FORMAT);
+        let views = [&geometry, &curvature].map(|target| target.create_view(&Default::default()));
         let from = aov::GeometrySource {
             ids: &ids,
             orthographic: input.camera.orthographic,
             meshes: self.contents.needs().kinds.meshes,
         };
-        self.aov.draw(&gpu, &mut encoder, &self.visibility, &scene, &from, &target)?;
+        self.aov.draw(&gpu, &mut encoder, &self.visibility, &scene, &from, views.each_ref())?;
         gpu.queue.submit([encoder.finish()]);
         gpu.wait()?;
         let floats = |bytes: Vec<u8>| bytes.chunks_exact(4).map(bytemuck::pod_read_unaligned).collect::<Vec<f32>>();
@@ -588,6 +593,7 @@ impl Renderer {
             layer_count,
             found: found.collect::<Result<_, GpuError>>()?,
             geometry: floats(read_texture(&gpu, &geometry, 16)?),
+            curvature: floats(read_texture(&gpu, &curvature, 4)?),
             ids: read_texture(&gpu, self.targets.ids()?, 4)?
                 .chunks_exact(4)
                 .map(bytemuck::pod_read_unaligned)

@@ -70,6 +70,14 @@ gpu_struct! {
         pub shader: u32,
         /// Which of that shader's parameter sets.
         pub index: u32,
+        /// The shader that stylises its light, by one more than its place in the registry; 0 for none.
+        pub stylist: u32,
+        /// Which of that shader's parameter sets.
+        pub stylist_index: u32,
+        /// Padding.
+        pub _pad0: u32,
+        /// Padding.
+        pub _pad1: u32,
     }
 }
 
@@ -120,6 +128,8 @@ pub struct DrawList {
     pub meshes: Option<Arc<Scene>>,
     /// An entry for each part of that scene, none where it is hidden.
     pub parts: Vec<Option<MeshPart>>,
+    /// Whether the curvature of shapes is asked for.
+    pub bent: bool,
 }
 
 impl DrawList {
@@ -175,7 +185,7 @@ impl ObjectBuffers {
             Ball { center: (a + b) * 0.5, radius: 0.5 * a.distance(b) + connector.radius }
         };
         match &list.meshes {
-            Some(scene) => self.meshes.set(gpu, scene, &list.parts)?,
+            Some(scene) => self.meshes.set(gpu, scene, &list.parts, list.bent)?,
             None => self.meshes.clear(),
         }
         self.atoms.set(gpu, bytemuck::cast_slice(&list.atoms));

@@ -6,8 +6,10 @@ use std::fmt::Write as _;
 
 use super::layers::{self, LayerTargets};
 use super::lights::Lights;
+use super::mesh;
 use super::post::{self, Finish};
 use super::shadow::{ShadowFilter, ShadowMaps, Shadows};
+use super::texels::KeptTexture;
 use super::visibility::{DEPTH_FORMAT, SceneBindings, Visibility};
 use crate::gpu::{Bound, Gpu, GpuError, KeptBindGroup, KeptBuffer, Module, PassTimer, Wgsl};
 use crate::gpu_struct;
@@ -97,6 +99,8 @@ pub struct ShadeInputs<'a> {
     pub shadows: Option<(&'a ShadowMaps, &'a Shadows)>,
     /// Parameter sets of each shader, by its registry place.
     pub materials: &'a BTreeMap<usize, KeptBuffer>,
+    /// Tables of each shader that has any.
+    pub tables: &'a BTreeMap<usize, KeptTexture>,
 }
 
 /// Where the shading pass draws.
@@ -269,6 +273,10 @@ impl Shade {
         for shader in key.shaders.iter().map(|needs| &needs.shader) {
             entries.push(entry(binding, uniform));
             binding += 1;
+            if SHADERS[*shader].tables_name().is_some() {
+                entries.push(entry(binding, texture(wgpu::TextureSampleType::Uint, D2)));
+                binding += 1;
+            }
             for resource in self.resources.get(shader).into_iter().flatten() {
                 let ty = match resource {
                     UploadedResource::Uniform(_) => uniform,
@@ -310,6 +318,11 @@ impl Shade {
             let Some(materials) = inputs.materials.get(shader).and_then(KeptBuffer::get) else { return Ok(None) };
             bound.push((binding, Bound::Buffer(materials)));
             binding += 1;
+            if SHADERS[*shader].tables_name().is_some() {
+                let Some(tables) = inputs.tables.get(shader).and_then(KeptTexture::view) else { return Ok(None) };
+                bound.push((binding, Bound::View(tables)));
+                binding += 1;
+            }
             for resource in self.resources.get(shader).into_iter().flatten() {
                 let resource = match resource {
                     UploadedResource::Uniform(buffer) => Bound::Buffer(buffer.clone()),
@@ -426,11 +439,11 @@ pub fn shade_module(key: &ShadeKey) -> Module {
         wgsl!("lib/texels.wgsl"),
         wgsl!("lib/objects.wgsl"),
         wgsl!("lib/intersect.wgsl"),
-        if key.meshes { wgsl!("lib/mesh.wgsl") } else { wgsl!("lib/mesh_none.wgsl") },
         wgsl!("lib/surface.wgsl"),
         wgsl!("lib/lights.wgsl"),
         wgsl!("lib/encode.wgsl"),
     ]);
+    mesh::point_files(key.meshes).iter().for_each(|file| module.add(*file));
     let shadow_files: &[Wgsl] = match (key.shadows, key.shadow_filter) {
         (false, _) => &[wgsl!("lib/shadow_none.wgsl")],
         (true, ShadowFilter::Objects) => &[wgsl!("lib/shadow_maps.wgsl"), wgsl!("lib/shadow.wgsl")],
@@ -439,13 +452,14 @@ pub fn shade_module(key: &ShadeKey) -> Module {
     shadow_files.iter().for_each(|file| module.add(*file));
     let mut bindings = format!(
         "const ORTHOGRAPHIC: bool = {};\nconst ENCODE: bool = {};\nconst ATOMS: bool = {};\nconst CONNECTORS: bool = {};\nconst MESHES: bool = {};\nconst HULLS: bool = {};\n\
-         const SHADOWS: bool = {};\nconst LIGHT_COUNT: u32 = {}u;\nconst POINT_LIGHTS: bool = {};\n",
+         const CURVATURE: bool = {};\nconst SHADOWS: bool = {};\nconst LIGHT_COUNT: u32 = {}u;\nconst POINT_LIGHTS: bool = {};\n",
         key.orthographic,
         key.encode,
         key.atoms,
         key.connectors,
         key.meshes,
         key.hulls,
+        key.layers.is_some() && key.shaders.iter().any(|needs| SHADERS[needs.shader].stylises()),
         key.shadows,
         key.lights,
         key.point_lights
@@ -460,7 +474,8 @@ pub fn shade_module(key: &ShadeKey) -> Module {
             .push_str(&format!("const SOFT_TAPS: u32 = {}u;\nconst SHADOW_FILTER: u32 = {filter}u;\n", key.soft_taps));
     }
     let mut binding = FIRST_SHADER_BINDING;
-    let mut cases = String::new();
+    let num_lighting = key.shaders.iter().filter(|needs| !SHADERS[needs.shader].stylises()).count();
+    let (mut cases, mut stylings) = (String::new(), String::new());
     for needs in &key.shaders {
         let shader: &dyn ObjectShader = SHADERS[needs.shader];
         for file in shader.wgsl() {
@@ -469,13 +484,25 @@ pub fn shade_module(key: &ShadeKey) -> Module {
         for (bit, feature) in shader.features().iter().enumerate() {
             bindings.push_str(&format!("const {feature}: bool = {};\n", needs.features >> bit & 1 == 1));
         }
+        let tables = shader.tables_name().map(|name| format!("var {name}: texture_2d<u32>;"));
         let declarations = std::iter::once(shading::material_declaration(shader))
+            .chain(tables)
             .chain(shader.resources().iter().map(|resource| resource.declaration.to_owned()));
         for declaration in declarations {
             bindings.push_str(&format!("@group(1) @binding({binding}) {declaration}\n"));
             binding += 1;
         }
         let name = shader.name();
+        if shader.stylises() {
+            let _ = writeln!(
+                stylings,
+                "    if materials[material].stylist == {}u {{\n        \
+                 let m = {name}_materials[materials[material].stylist_index];\n        \
+                 return {name}_stylised(m, color, {name}_bend(s, m));\n    }}",
+                needs.shader + 1
+            );
+            continue;
+        }
         // A constant index is one load for all pixels, a varying one a load for each.
         let (material, params) = match needs.only_material {
             Some(material) => (format!("materials[{material}u]"), "0u".to_owned()),
@@ -484,7 +511,7 @@ pub fn shade_module(key: &ShadeKey) -> Module {
         let call =
             format!("return {name}_shade(with_base_color(s, {material}.base_color), {name}_materials[{params}]);");
         let condition = match needs.only_material {
-            _ if key.shaders.len() == 1 => "true".to_owned(),
+            _ if num_lighting == 1 => "true".to_owned(),
             Some(material) => format!("material == {material}u"),
             None => format!("materials[material].shader == {}u", needs.shader),
         };
@@ -495,6 +522,13 @@ pub fn shade_module(key: &ShadeKey) -> Module {
          colored.base_color = mix(s.base_color, color.rgb, color.a);\n    return colored;\n}}\n\
          fn shade_object(s: Surface, material: u32) -> vec3<f32> {{\n{cases}    return s.base_color;\n}}\n"
     ));
+    if key.layers.is_some() {
+        bindings.push_str(&format!(
+            "fn shade_layer(s: Surface, material: u32) -> vec4<f32> {{\n    \
+             let color = shade_object(s, material);\n{stylings}    \
+             return vec4<f32>(color, materials[material].opacity);\n}}\n"
+        ));
+    }
     bindings.push_str(&material_function(key));
     module.add_generated("shade bindings", bindings);
     module.add(wgsl!("objects/shade.wgsl"));

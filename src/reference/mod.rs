@@ -9,6 +9,7 @@
 //! spread by pixel and sample: the same bytes come from any number of threads.
 
 mod basic;
+pub mod curvature;
 mod hull;
 mod lens;
 mod light;
@@ -32,6 +33,7 @@ pub use world::{Cylinder, Hit, Look, Meshes, Object, Part, Sphere, Surface, Worl
 use crate::scene::Camera;
 use crate::shading::toon::ToonMaterial;
 use basic::Basic;
+use curvature::Stylist;
 
 /// How a material is shaded.
 pub enum Shade {
@@ -72,6 +74,8 @@ pub struct Material {
     pub opacity: f64,
     /// How they are shaded.
     pub shade: Shade,
+    /// What their curvature makes of that, where anything.
+    pub stylist: Option<Box<Stylist>>,
 }
 
 /// A camera onto pixels.

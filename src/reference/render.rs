@@ -220,7 +220,8 @@ impl Picture<'_> {
                 let place = DVec2::new(f64::from(x), f64::from(y))
                     + (DVec2::new(f64::from(cell[0]), f64::from(cell[1])) + 0.5) / f64::from(side);
                 let sight = Sight::new(&self.optics, place, lens);
-                let (mut color, mut share) = self.sample([x, y], index, shared_by, &sight, studio);
+                let of = Sample { pixel: [x, y], index, shared_by, footprint_px: 1.0 / f64::from(side) };
+                let (mut color, mut share) = self.sample(of, &sight, studio);
                 for (lines, covered) in self.lines.iter().zip(&covered) {
                     let colors = [lines.crease_color, lines.boundary_color, lines.silhouette_color];
                     for ([r, g, b, opacity], covered) in colors.into_iter().zip(covered[at[1] * width + at[0]]) {
@@ -282,7 +283,8 @@ impl Picture<'_> {
             // Spread over the pixel's samples, whichever cell each has.
             let lens = self.lens.as_ref().map(|lens| (lens, spread(index, seed(pixel, 0, FOR_LENS))));
             let sight = Sight::new(&self.optics, place, lens);
-            let (color, covered) = self.sample(pixel, index, shared_by, &sight, studio);
+            let of = Sample { pixel, index, shared_by, footprint_px: 1.0 / f64::from(side) };
+            let (color, covered) = self.sample(of, &sight, studio);
             light += color;
             alpha += covered;
         }
@@ -300,7 +302,8 @@ impl Picture<'_> {
     }
 
     /// Light along one line of sight, and the share of what is behind it that it covers.
-    fn sample(&self, pixel: [u32; 2], index: u32, shared_by: u32, sight: &Sight, studio: &Studio) -> (DVec3, f64) {
+    fn sample(&self, of: Sample, sight: &Sight, studio: &Studio) -> (DVec3, f64) {
+        let Sample { pixel, index, shared_by, footprint_px } = of;
         let near = self.optics.near;
         let (mut light, mut open) = (DVec3::ZERO, 1.0);
         let mut crossed: Vec<u64> = Vec::new();
@@ -329,10 +332,17 @@ impl Picture<'_> {
                 continue;
             };
             let surface = self.world.surface(ray, hit);
-            let opacity = self.materials[surface.material as usize].opacity;
+            let material = &self.materials[surface.material as usize];
+            let bend = material.stylist.as_ref().map(|stylist| {
+                (stylist, stylist.bend(self.world, &self.optics, ray, hit, &surface, footprint_px))
+            });
+            let opacity = bend.as_ref().map_or(material.opacity, |(stylist, bend)| stylist.opacity(*bend));
             if opacity > 0.0 {
                 let seen = Seen { pixel, index, shared_by, surface: &surface, hit };
                 let mut color = self.shaded(&seen, -ray.direction.normalize(), studio);
+                if let Some((stylist, bend)) = bend {
+                    color = stylist.weighed(color, bend);
+                }
                 if let Some(circles) = &self.layers {
                     color = circles.layer_color(hit.t, color);
                 }
@@ -389,6 +399,17 @@ impl Picture<'_> {
             color * (1.0 - occlusion.intensity * occluded).max(0.0)
         })
     }
+}
+
+/// One sample of a pixel.
+#[derive(Debug, Clone, Copy)]
+struct Sample {
+    pixel: [u32; 2],
+    index: u32,
+    /// How many samples share a pixel's rays.
+    shared_by: u32,
+    /// Side of the square that it stands for.
+    footprint_px: f64,
 }
 
 /// A surface as one sample sees it.

@@ -14,6 +14,7 @@ use obvhs::{Boundable, BvhBuildParams};
 
 use super::hull::Outline;
 use super::primitive::{Ray, cone_span, cylinder_normal, sphere_span, triangle_hit};
+use crate::scene::mesh::curvature::is_flat;
 use crate::scene::{Scene, linear_from_srgb, unpack_normal};
 
 /// How an object looks.
@@ -139,6 +140,19 @@ pub struct Surface {
     pub id: u64,
     /// 1 over the radius, 0 where flat.
     pub bend: f64,
+}
+
+/// A triangle of a part where it is, for who asks more of it than [`Surface`] says.
+#[derive(Debug, Clone, Copy)]
+pub struct Facet {
+    /// In view space.
+    pub corners: [DVec3; 3],
+    /// Unit normals of its corners, outwards.
+    pub normals: [DVec3; 3],
+    /// Sum of the principal curvatures at its corners, over scene units; 0 where its normals are equal.
+    pub kappa: [f64; 3],
+    /// As in [`Bending::creases`](crate::scene::mesh::curvature::Bending::creases).
+    pub creases: u8,
 }
 
 /// Everything that is drawn, in view space.
@@ -432,6 +446,50 @@ impl World {
             }
             Object::Triangle(index) => self.mesh_surface(ray, position, index),
         }
+    }
+
+    /// A cylinder's axis, a unit vector; zero for all else.
+    pub fn axis(&self, object: Object) -> DVec3 {
+        match object {
+            Object::Cylinder(index) => {
+                let [a, b] = self.cylinders[index as usize].ends;
+                (b - a).normalize_or_zero()
+            }
+            _ => DVec3::ZERO,
+        }
+    }
+
+    /// Outward normal of a sphere or cylinder at a point of it.
+    pub fn outward(&self, object: Object, position: DVec3) -> DVec3 {
+        match object {
+            Object::Sphere(index) => (position - self.spheres[index as usize].center).normalize_or_zero(),
+            Object::Cylinder(index) => {
+                let rod = &self.cylinders[index as usize];
+                cylinder_normal(position, rod.ends[0], rod.ends[1], rod.radius)
+            }
+            Object::Triangle(_) => DVec3::ZERO,
+        }
+    }
+
+    /// A triangle with its curvature.
+    pub fn facet(&self, index: u32) -> Option<Facet> {
+        let triangle = &self.triangles[index as usize];
+        let (meshes, placed) = self.meshes.as_ref()?;
+        let of_scene = &meshes.scene.assembly.parts[meshes.parts[triangle.part as usize].part as usize];
+        let shape = &meshes.scene.assembly.shapes[of_scene.shape as usize];
+        let placed = &placed[triangle.part as usize];
+        let vertices = &shape.triangles[triangle.index as usize];
+        let scale = placed.view_from_shape.matrix3.determinant().abs().cbrt();
+        let bending = shape.bending();
+        let is_flat = is_flat(shape, vertices);
+        let kappa = |vertex: u32| if is_flat { 0.0 } else { f64::from(bending.kappa[vertex as usize]) / scale };
+        let normal = |vertex: u32| (placed.normals * unpack_normal(shape.normals[vertex as usize]).as_dvec3()).normalize();
+        Some(Facet {
+            corners: self.corners(index),
+            normals: vertices.map(normal),
+            kappa: vertices.map(kappa),
+            creases: bending.creases[triangle.index as usize],
+        })
     }
 
     fn mesh_surface(&self, ray: Ray, position: DVec3, index: u32) -> Surface {

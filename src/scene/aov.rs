@@ -24,11 +24,14 @@ pub enum AovName {
     Coc,
     /// How many transparent surfaces a pixel's ray meets in front of what is opaque.
     LayerCount,
+    /// Sum of the principal curvatures of the nearest surface as it is seen, negative where convex, over scene units; no number
+    /// where nothing is.
+    Curvature,
 }
 
 impl AovName {
     /// All of them, by their names on the command line.
-    pub const ALL: [(&'static str, AovName); 7] = [
+    pub const ALL: [(&'static str, AovName); 8] = [
         ("depth", AovName::Depth),
         ("normal", AovName::Normal),
         ("id", AovName::Id),
@@ -36,6 +39,7 @@ impl AovName {
         ("ao", AovName::Ao),
         ("coc", AovName::Coc),
         ("layer_count", AovName::LayerCount),
+        ("curvature", AovName::Curvature),
     ];
 }
 
@@ -58,6 +62,9 @@ pub struct AovImage {
     pub coc: Vec<f32>,
     /// How many transparent surfaces a pixel's ray meets in front of what is opaque.
     pub layer_count: Vec<u32>,
+    /// Sum of the principal curvatures of the nearest surface as it is seen, negative where convex, over scene units; no number
+    /// where nothing is.
+    pub curvature: Vec<f32>,
 }
 
 impl AovImage {
@@ -79,6 +86,7 @@ impl AovImage {
             AovName::Ao => vec![AnyChannel::new("Y", plane(&self.ao, 1, 0))],
             AovName::Coc => vec![AnyChannel::new("Y", plane(&self.coc, 1, 0))],
             AovName::LayerCount => vec![AnyChannel::new("Y", FlatSamples::U32(self.layer_count.clone()))],
+            AovName::Curvature => vec![AnyChannel::new("Y", plane(&self.curvature, 1, 0))],
             AovName::Id => vec![AnyChannel::new("id", FlatSamples::U32(self.ids.clone()))],
             AovName::Color => ["R", "G", "B", "A"]
                 .into_iter()

@@ -10,15 +10,17 @@ use crate::gpu::{GpuStruct, StructInfo, Wgsl};
 use crate::{gpu_struct, wgsl};
 
 /// The parameters of `basic`.
-pub const PARAMS: &[Param] = &[
-    BASE_COLOR,
-    OPACITY,
-    Param::number("smoothness", 0.5).range(0.0, 1.0).doc("0 is matt, 1 a mirror.").examples(&["0", "0.5", "1"]),
-    Param::number("metallic", 0.0)
-        .range(0.0, 1.0)
-        .doc("0 is plastic, 1 is metal in the base colour.")
-        .examples(&["0", "0.5", "1"]),
-];
+pub const PARAMS: &[Param] = &[BASE_COLOR, OPACITY, SMOOTHNESS, METALLIC];
+
+/// `smoothness`.
+pub const SMOOTHNESS: Param =
+    Param::number("smoothness", 0.5).range(0.0, 1.0).doc("0 is matt, 1 a mirror.").examples(&["0", "0.5", "1"]);
+
+/// `metallic`.
+pub const METALLIC: Param = Param::number("metallic", 0.0)
+    .range(0.0, 1.0)
+    .doc("0 is plastic, 1 is metal in the base colour.")
+    .examples(&["0", "0.5", "1"]);
 
 gpu_struct! {
     "objects/basic.wgsl",
@@ -76,7 +78,7 @@ impl ObjectShader for Basic {
     fn material_info(&self) -> StructInfo {
         BasicMaterial::info()
     }
-    fn material(&self, values: &Values, context: &MaterialContext) -> Vec<u8> {
+    fn material(&self, values: &Values, context: &MaterialContext<'_>) -> Vec<u8> {
         let material = BasicMaterial::new(
             values.number("smoothness") as f32,
             values.number("metallic") as f32,

@@ -1,10 +1,12 @@
 //! Object shaders: one file each, with its parameters, its GPU struct and the name of its WGSL; found through [`SHADERS`].
 //!
 //! To add one: `src/shading/NAME.rs`, `shaders/objects/NAME.wgsl` with `fn NAME_shade(s: Surface, m: NAMEMaterial) ->
-//! vec3<f32>` (linear light), a twin in `tests/twins/NAME.rs`, and one line in [`SHADERS`].
+//! vec3<f32>` (linear light), a twin in `tests/twins/NAME.rs`, and one line in [`SHADERS`]. One that stylises what another
+//! lights has `NAME_bend` and `NAME_stylised` instead: see `shaders/objects/curvature.wgsl`.
 
 pub mod basic;
 pub mod brdf_table;
+pub mod curvature;
 pub mod environment;
 pub mod toon;
 pub mod unlit;
@@ -13,12 +15,21 @@ use glam::Vec3;
 
 use crate::config::param::{BaseColor, Length, Param, Srgba, Values};
 use crate::gpu::{Gpu, GpuError, StructInfo, Wgsl};
+use crate::scene::Sphere;
 
 /// What a material needs to know beside its own parameters.
-#[derive(Debug, Clone, Copy)]
-pub struct MaterialContext {
+#[derive(Clone, Copy)]
+pub struct MaterialContext<'a> {
     /// 2 to the power of the camera's exposure in stops.
     pub exposure_factor: f32,
+    /// The scene's sphere, in world space.
+    pub bounds: Sphere,
+    /// How strongly curvature is read unless a style says, over one curvature of that sphere.
+    pub gain: f32,
+    /// A length on the screen: pixels, and scene units, to be added.
+    pub screen: &'a dyn Fn(Length) -> (f64, f64),
+    /// The first texel of the material's tables.
+    pub table: u32,
 }
 
 /// An outline by enlarged back faces.
@@ -59,7 +70,7 @@ pub trait ObjectShader: Sync {
     /// The WGSL struct of its materials.
     fn material_info(&self) -> StructInfo;
     /// The bytes of one material.
-    fn material(&self, values: &Values, context: &MaterialContext) -> Vec<u8>;
+    fn material(&self, values: &Values, context: &MaterialContext<'_>) -> Vec<u8>;
     /// Names of the constants by which its WGSL leaves out what no material of a style uses.
     fn features(&self) -> &'static [&'static str] {
         &[]
@@ -76,14 +87,34 @@ pub trait ObjectShader: Sync {
     fn resources(&self) -> &'static [Resource] {
         &[]
     }
-    /// The structs that those bindings hold.
+    /// The shader that lights its surfaces, for one that only stylises that light: it weighs it and says how much it covers.
+    fn lit_by(&self, _values: &Values) -> Option<&'static str> {
+        None
+    }
+    /// Whether it stylises what another one lights.
+    fn stylises(&self) -> bool {
+        false
+    }
+    /// Whether what it draws is blended in layers.
+    fn is_layered(&self, values: &Values) -> bool {
+        values.number(OPACITY.name) < 1.0
+    }
+    /// Tables of a material, four numbers a texel; materials with equal tables share them.
+    fn tables(&self, _values: &Values) -> Vec<[f32; 4]> {
+        Vec::new()
+    }
+    /// The texture that its WGSL finds tables in, if it has any.
+    fn tables_name(&self) -> Option<&'static str> {
+        None
+    }
+    /// The structs that its resources hold.
     fn resource_infos(&self) -> Vec<StructInfo> {
         Vec::new()
     }
 }
 
 /// All object shaders, in the order of their numbers on the GPU.
-pub const SHADERS: &[&dyn ObjectShader] = &[&basic::Basic, &toon::Toon, &unlit::Unlit];
+pub const SHADERS: &[&dyn ObjectShader] = &[&basic::Basic, &toon::Toon, &unlit::Unlit, &curvature::Curvature];
 
 /// The shader of what nothing selects.
 pub const DEFAULT_SHADER: &str = "basic";

@@ -9,7 +9,7 @@ use crate::gpu::{GpuStruct, StructInfo, Wgsl};
 use crate::{gpu_struct, wgsl};
 
 /// Values of `levels`, in the order of their numbers on the GPU.
-const LEVELS: &[&str] = &["floor", "centre", "full"];
+const LEVEL_WORDS: &[&str] = &["floor", "centre", "full"];
 
 /// The parameters of `toon`.
 pub const PARAMS: &[Param] = &[
@@ -29,25 +29,15 @@ pub const PARAMS: &[Param] = &[
         .range(0.0, 1.0)
         .doc("Cosine between surface and view below which the surface itself turns into outline; 0 draws none.")
         .examples(&["0", "0.35", "0.6"]),
-    Param::number("scale", 0.5)
-        .range(0.0, 10.0)
-        .doc("Weight of the cosine between surface and light (alpha).")
-        .examples(&["0.1", "0.5", "1"]),
-    Param::number("bias", 0.5)
-        .range(0.0, 10.0)
-        .doc("Light that is there without the cosine (beta).")
-        .examples(&["0.1", "0.5", "0.9"]),
+    SCALE,
+    BIAS,
     Param::number("exponent", 1.0)
         .range(0.01, 100.0)
         .doc("Moves the borders between the bands (gamma).")
         .examples(&["0.4", "1", "3"]),
-    Param::count("steps", 4).range(1.0, 256.0).doc("How many bands; 1 is flat.").examples(&["1", "2", "4", "8"]),
-    Param::choice("levels", LEVELS, "floor")
-        .doc("Brightness of a band: of its darker border as published, its centre, or spread from black to full.")
-        .examples(&[r#""floor""#, r#""centre""#, r#""full""#]),
-    Param::optional_color("shadow_color")
-        .doc("Multiplies the colour where no light is; unset, what is unlit turns black.")
-        .examples(&["null", r##""#3b3a66""##, "[150, 70, 40]"]),
+    STEPS,
+    LEVELS,
+    SHADOW_COLOR,
     Param::optional_color("specular_color").doc("Colour of a flat highlight; unset, there is none.").examples(&[
         "null",
         r#""white""#,
@@ -58,6 +48,32 @@ pub const PARAMS: &[Param] = &[
         .doc("Cosine between mirrored light and view above which the highlight is drawn.")
         .examples(&["0.7", "0.9", "0.98"]),
 ];
+
+/// `scale`.
+pub const SCALE: Param = Param::number("scale", 0.5)
+    .range(0.0, 10.0)
+    .doc("Weight of the cosine between surface and light (alpha).")
+    .examples(&["0.1", "0.5", "1"]);
+
+/// `bias`.
+pub const BIAS: Param = Param::number("bias", 0.5)
+    .range(0.0, 10.0)
+    .doc("Light that is there without the cosine (beta).")
+    .examples(&["0.1", "0.5", "0.9"]);
+
+/// `steps`.
+pub const STEPS: Param =
+    Param::count("steps", 4).range(1.0, 256.0).doc("How many bands; 1 is flat.").examples(&["1", "2", "4", "8"]);
+
+/// `levels`.
+pub const LEVELS: Param = Param::choice("levels", LEVEL_WORDS, "floor")
+    .doc("Brightness of a band: of its darker border as published, its centre, or spread from black to full.")
+    .examples(&[r#""floor""#, r#""centre""#, r#""full""#]);
+
+/// `shadow_color`.
+pub const SHADOW_COLOR: Param = Param::optional_color("shadow_color")
+    .doc("Multiplies the colour where no light is; unset, what is unlit turns black.")
+    .examples(&["null", r##""#3b3a66""##, "[150, 70, 40]"]);
 
 gpu_struct! {
     "objects/toon.wgsl",
@@ -116,7 +132,7 @@ impl ObjectShader for Toon {
     fn material_info(&self) -> StructInfo {
         ToonMaterial::info()
     }
-    fn material(&self, values: &Values, _context: &MaterialContext) -> Vec<u8> {
+    fn material(&self, values: &Values, _context: &MaterialContext<'_>) -> Vec<u8> {
         bytemuck::bytes_of(&ToonMaterial {
             color: linear(values.color("color")).extend(1.0).to_array(),
             shadow_color: optional_linear(values.optional_color("shadow_color")),
@@ -127,7 +143,7 @@ impl ObjectShader for Toon {
             steps: values.count("steps") as f32,
             outline_bias: values.number("outline_bias") as f32,
             specular_limit: values.number("specular_limit") as f32,
-            levels: LEVELS.iter().position(|level| *level == values.choice("levels")).unwrap_or(0) as u32,
+            levels: LEVEL_WORDS.iter().position(|level| *level == values.choice("levels")).unwrap_or(0) as u32,
             opacity: values.number("opacity") as f32,
             top: (values.number("scale") + values.number("bias")).powf(values.number("exponent")) as f32,
             _pad0: 0.0,

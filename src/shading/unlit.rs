@@ -45,7 +45,7 @@ impl ObjectShader for Unlit {
     fn material_info(&self) -> StructInfo {
         UnlitMaterial::info()
     }
-    fn material(&self, values: &Values, _context: &MaterialContext) -> Vec<u8> {
+    fn material(&self, values: &Values, _context: &MaterialContext<'_>) -> Vec<u8> {
         let material = UnlitMaterial { opacity: values.number("opacity") as f32, _pad0: 0.0, _pad1: 0.0, _pad2: 0.0 };
         bytemuck::bytes_of(&material).to_vec()
     }

@@ -24,7 +24,7 @@ fn ball(center: DVec3, radius: f64) -> Sphere {
 }
 
 fn matt(opacity: f64) -> Material {
-    Material { base_color: None, hull: None, opacity, shade: Shade::Unlit }
+    Material { base_color: None, hull: None, opacity, shade: Shade::Unlit, stylist: None }
 }
 
 /// A camera at the origin that sees one unit to each side.

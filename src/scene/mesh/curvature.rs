@@ -19,7 +19,7 @@ pub struct Bending {
     /// Sum of the principal curvatures at each vertex, negative where convex, over units of the shape.
     pub kappa: Vec<f32>,
     /// For each triangle a bit for each of its edges, from its first, second and third corner on, that is a crease or ends the
-    /// surface.
+    /// surface, and above them a bit for each of its corners at which any such edge begins or ends.
     pub creases: Vec<u8>,
 }
 
@@ -85,6 +85,7 @@ fn creases(shape: &Shape) -> Vec<u8> {
     }
     sides.sort_unstable();
     let mut creases = vec![0u8; shape.triangles.len()];
+    let mut is_on_crease = vec![false; places.len()];
     // The normal of a side at one of its places.
     let normal = |side: u32, place: u32| {
         let vertices = &shape.triangles[side as usize / 3];
@@ -104,7 +105,12 @@ fn creases(shape: &Shape) -> Vec<u8> {
         };
         if is_crease {
             edge.iter().for_each(|(_, side)| creases[*side as usize / 3] |= 1 << (side % 3));
+            edge[0].0.iter().for_each(|place| is_on_crease[*place as usize] = true);
         }
+    }
+    for (triangle, bits) in shape.triangles.iter().zip(&mut creases) {
+        let corners = (0..3).filter(|&k| is_on_crease[places[triangle[k] as usize] as usize]);
+        *bits |= corners.map(|k| 8 << k).sum::<u8>();
     }
     creases
 }
@@ -144,7 +150,7 @@ mod tests {
             }
         }
         // The rims of both caps, from both sides.
-        let count: u32 = shape.bending().creases.iter().map(|bits| bits.count_ones()).sum();
+        let count: u32 = shape.bending().creases.iter().map(|bits| (bits & 7).count_ones()).sum();
         assert_eq!(count, 4 * 64);
     }
 
@@ -189,14 +195,14 @@ mod tests {
         let (assembly, _) = build_one(cube());
         let shape = &assembly.shapes[0];
         assert!(shape.bending().kappa.iter().all(|kappa| *kappa == 0.0));
-        assert!(shape.bending().creases.iter().all(|bits| bits.count_ones() == 2), "{:?}", shape.bending().creases);
+        assert!(shape.bending().creases.iter().all(|bits| (bits & 7).count_ones() == 2 && bits >> 3 == 7), "{:?}", shape.bending().creases);
     }
 
     #[test]
     fn an_open_edge_is_a_crease() {
         let sheet = mapped(super::super::solids::terrain(), |p| DVec3::new(p.x, p.y, 0.0));
         let (assembly, _) = build_one(sheet);
-        let count: u32 = assembly.shapes[0].bending().creases.iter().map(|bits| bits.count_ones()).sum();
+        let count: u32 = assembly.shapes[0].bending().creases.iter().map(|bits| (bits & 7).count_ones()).sum();
         assert_eq!(count, 80, "20 on each side");
     }
 }

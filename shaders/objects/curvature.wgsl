@@ -1,0 +1,78 @@
+// Transparency by curvature: what is flat clears away, what is curved and the rims stay.
+// Another shader lights the surface; this one weighs its light and says how much of what is behind it covers.
+// Source: [Murray2016 §5], with the exact curvature of the surface in place of differences between pixels, and rims of a width
+// of one's choice in place of pixels without a neighbour.
+
+struct CurvatureMaterial {
+    // Of the scene's sphere, in world space, and its radius.
+    center_world: vec3<f32>,
+    radius: f32,
+    // Curvature, over scene units, is read as tanh(gain * kappa).
+    gain: f32,
+    // What curvature rims count as, 0..1.
+    contour: f32,
+    // Their width: pixels plus scene units.
+    contour_px: f32,
+    contour_world: f32,
+    // How much of the curvature is that of the picture, which grows towards silhouettes, 0..1.
+    emphasis: f32,
+    // Depth of the scene's sphere at which the transfer function begins, and one over the depth to its end, both in 0..1 of it.
+    depth_start: f32,
+    depth_scale: f32,
+    // Factor on the opacity.
+    opacity: f32,
+    // First texel of its transfer functions.
+    table: u32,
+    _pad0: u32,
+    _pad1: u32,
+    _pad2: u32,
+}
+
+// Where a fragment stands in the transfer functions.
+struct Bend {
+    // Signed, -1 convex to 1 concave.
+    kappa: f32,
+    // Its size, 0..1; at rims not that of kappa, which may pass through 0 there.
+    curvature: f32,
+    // 0 near to 1 far.
+    depth: f32,
+}
+
+// Power of the foreshortening, and the least cosine that it is taken of.
+const FORESHORTENING: f32 = 0.4;
+const LEAST_FACING: f32 = 0.05;
+
+// Curvature as the picture has it [Vergne2009 §3]: of the normal's two coordinates in the picture over a power of the third.
+fn curvature_of_picture(s: Surface) -> f32 {
+    let facing = max(dot(s.normal_view, s.to_viewer), LEAST_FACING);
+    let across = s.normal_view - facing * s.to_viewer;
+    // Change of the cosine over a scene unit across the line of sight.
+    let step = vec2<f32>(1.0, -1.0) * facing_step(s) / max(view.footprint_px * pixel_world_at(s), 1e-30);
+    let turn = dot(across.xy, step);
+    return (s.kappa + FORESHORTENING * turn / facing) / pow(facing, FORESHORTENING);
+}
+
+fn pixel_world_at(s: Surface) -> f32 {
+    return view.pixel_view * mix(-s.position_view.z, 1.0, view.orthographic);
+}
+
+fn curvature_bend(s: Surface, m: CurvatureMaterial) -> Bend {
+    var kappa = s.kappa;
+    if CURVATURE_EMPHASIS && m.emphasis > 0.0 { kappa = mix(kappa, curvature_of_picture(s), m.emphasis); }
+    let signed = tanh(clamp(m.gain * kappa, -20.0, 20.0));
+    let width_px = m.contour_px + m.contour_world / pixel_world_at(s);
+    let rim = select(0.0, clamp(width_px / view.footprint_px - s.rim_steps + 0.5, 0.0, 1.0), width_px > 0.0);
+    let middle = -to_view(view, m.center_world).z;
+    let depth = 0.5 * ((-s.position_view.z - middle) / m.radius + 1.0);
+    return Bend(
+        mix(signed, -m.contour, rim),
+        mix(abs(signed), m.contour, rim),
+        clamp((depth - m.depth_start) * m.depth_scale, 0.0, 1.0),
+    );
+}
+
+// Linear light of a surface, weighed, and the share of what is behind that it covers.
+fn curvature_stylised(m: CurvatureMaterial, color: vec3<f32>, bend: Bend) -> vec4<f32> {
+    let opacity = m.opacity * opacity_transfer(curvature_tables, m.table, bend.curvature, bend.depth);
+    return vec4<f32>(color * color_transfer(curvature_tables, m.table, bend.kappa), opacity);
+}
