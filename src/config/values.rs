@@ -5,6 +5,7 @@ use super::error::Place;
 use super::length::Length;
 use super::param::{Param, Value};
 use super::selector::Selector;
+use super::transfer::Transfer;
 
 /// Where a value comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -178,6 +179,14 @@ impl Values {
     pub fn boolean(&self, name: &str) -> bool {
         self.expect(name, "boolean", |value| match value {
             Value::Boolean(b) => Some(*b),
+            _ => None,
+        })
+    }
+
+    /// A transfer function.
+    pub fn transfer(&self, name: &str) -> &Transfer {
+        self.expect(name, "transfer function", |value| match value {
+            Value::Transfer(transfer) => Some(transfer),
             _ => None,
         })
     }
