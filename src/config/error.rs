@@ -206,6 +206,16 @@ pub enum Problem {
         /// Nearest word and all words.
         hint: Hint,
     },
+    /// A picture that cannot be used.
+    #[error("{} cannot use {}: {reason}", quote(.name), quote(.picture))]
+    Picture {
+        /// The key.
+        name: String,
+        /// The path as written.
+        picture: String,
+        /// Why not.
+        reason: String,
+    },
     /// A base file that cannot be used.
     #[error("cannot extend {}: {reason}", quote(.base))]
     Extends {
@@ -240,6 +250,7 @@ impl Problem {
             Self::BadColor { .. } => "bad_color",
             Self::BadLength { .. } => "bad_length",
             Self::BadSelector { .. } => "bad_selector",
+            Self::Picture { .. } => "picture",
             Self::Extends { .. } => "extends",
             Self::Meaningless(_) => "meaningless",
         }
@@ -279,8 +290,8 @@ pub struct Mistakes {
     pub list: Vec<Mistake>,
     /// How many more there are than the list holds.
     pub unlisted: usize,
-    /// The files that were read, the style first, then its bases, and last one that is not there or cannot be read: what
-    /// to watch for a correction.
+    /// The files that were read, the style first, then its bases, one that is not there or cannot be read, and last the
+    /// pictures, readable or not: what to watch for a correction.
     pub files: Vec<PathBuf>,
     /// What was noticed beside the mistakes.
     pub warnings: Vec<Warning>,

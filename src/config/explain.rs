@@ -143,6 +143,7 @@ fn value_json(param: &Param, value: &Value) -> Json {
         Value::Boolean(value) => json!(value),
         Value::Numbers(list) => json!(list),
         Value::Vector(vector) => json!(vector),
+        Value::Transfer(transfer) => transfer.to_json(),
         Value::Selector(_) | Value::Color(_) | Value::BaseColor(_) | Value::Choice(_) => json!(shown(param, value)),
     }
 }
@@ -163,6 +164,7 @@ fn shown(param: &Param, value: &Value) -> String {
         Value::Boolean(value) => value.to_string(),
         Value::Numbers(numbers) => format!("[{}]", list(numbers)),
         Value::Vector(vector) => format!("[{}]", list(vector)),
+        Value::Transfer(transfer) => transfer.to_string(),
     };
     if param.unit.is_empty() { bare } else { format!("{bare} {}", param.unit) }
 }

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::error::{Mistakes, Place, Problem};
-use super::file::{Unreadable, read_file};
+use super::file::{STYLE, Unreadable, pipe, read_file};
 use super::parse::parse;
 use super::source::{Source, Texts};
 use super::style::check_version;
@@ -45,8 +45,7 @@ impl Loader for Files {
         let found = beside(path);
         // Of a pipe or a device nobody knows when it ends, and --watch reads a base again and again.
         if found.metadata().is_ok_and(|base| !base.is_file() && !base.is_dir()) {
-            let reason = "this is a pipe or a device, not a style file".to_owned();
-            return Err(Unreadable { reason, path: std::path::absolute(&found).ok() });
+            return Err(Unreadable { reason: pipe(STYLE), path: std::path::absolute(&found).ok() });
         }
         let mut source = read_file(&found)?;
         source.name = beside(Path::new(&from.name)).display().to_string();

@@ -31,6 +31,7 @@ pub mod manual;
 pub mod param;
 mod parse;
 mod pattern;
+mod pictures;
 mod range;
 mod read;
 pub mod rules;
@@ -42,6 +43,7 @@ mod slips;
 mod source;
 pub mod style;
 pub mod syntax;
+pub mod transfer;
 pub mod transparency;
 pub mod values;
 
@@ -66,6 +68,7 @@ pub use selector::{Attribute, AttributeSet, AttributeValues, ObjectKind, Selecto
 pub use shaders::ShaderUse;
 pub use source::Source;
 pub use style::{EffectUse, Overrides, Rule, SectionValues, Style};
+pub use transfer::{Transfer, TransferKind};
 pub use transparency::{Transparency, TransparencyMethod};
 pub use values::{Origin, Values};
 

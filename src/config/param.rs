@@ -12,6 +12,7 @@
 pub use super::color::{BaseColor, Srgba};
 pub use super::length::Length;
 pub use super::selector::Selector;
+pub use super::transfer::{Transfer, TransferKind};
 pub use super::values::Values;
 
 /// Largest magnitude of any number in a style. Ours: far above any use, and safe to square in 32-bit floats.
@@ -51,6 +52,8 @@ pub enum Kind {
     },
     /// Three numbers.
     Vector,
+    /// A transfer function: the name of a preset, the path of a picture, or a list of control points.
+    Transfer(TransferKind),
 }
 
 /// The value of a parameter that the file does not give, in the form in which a table can hold it.
@@ -64,7 +67,7 @@ pub enum Default {
     Count(u32),
     /// For a length in radii.
     Radii(f64),
-    /// For a length with a unit, or a word of a choice.
+    /// For a length with a unit, a word of a choice, or a preset of a transfer function.
     Text(&'static str),
     /// For a colour.
     Color(Srgba),
@@ -103,6 +106,8 @@ pub enum Value {
     Numbers(Vec<f64>),
     /// A vector.
     Vector([f64; 3]),
+    /// A transfer function.
+    Transfer(Transfer),
 }
 
 /// One parameter.
@@ -212,6 +217,16 @@ impl Param {
         Self::new(name, Kind::Vector, Default::Unset)
     }
 
+    /// A transfer function of opacity. The default is a preset.
+    pub const fn opacity_transfer(name: &'static str, default: &'static str) -> Self {
+        Self::new(name, Kind::Transfer(TransferKind::Opacity), Default::Text(default))
+    }
+
+    /// A transfer function of colour. The default is a preset.
+    pub const fn color_transfer(name: &'static str, default: &'static str) -> Self {
+        Self::new(name, Kind::Transfer(TransferKind::Color), Default::Text(default))
+    }
+
     /// Lowest and highest allowed number.
     pub const fn range(mut self, lowest: f64, highest: f64) -> Self {
         self.range = Some((lowest, highest));
@@ -294,6 +309,9 @@ impl Param {
                 Ok(Value::Numbers(list.to_vec()))
             }
             (Kind::Vector, Default::Vector(vector)) => Ok(Value::Vector(vector)),
+            (Kind::Transfer(kind), Default::Text(name)) => {
+                Transfer::preset(kind, name).map_or_else(bad, |transfer| Ok(Value::Transfer(transfer)))
+            }
             _ => bad(),
         }
     }
@@ -365,6 +383,7 @@ impl Param {
                 numbers(&format!("a list of {len} numbers")) + order
             }
             Kind::Vector => numbers("three numbers"),
+            Kind::Transfer(kind) => kind.facts(),
         };
         let default = match self.default {
             Default::Unset => "unset (`null`)".to_owned(),
@@ -379,7 +398,11 @@ impl Param {
         };
         let mut holds = holds.chars();
         let first: String = holds.next().into_iter().flat_map(char::to_uppercase).collect();
-        format!("{first}{}. Default: {default}.", holds.as_str())
+        let presets = match self.kind {
+            Kind::Transfer(kind) => format!("\n{}", kind.preset_facts()),
+            _ => String::new(),
+        };
+        format!("{first}{}. Default: {default}.{presets}", holds.as_str())
     }
 }
 
@@ -427,7 +450,8 @@ pub fn check_table(params: &[Param]) -> Vec<String> {
                 | Value::Color(_)
                 | Value::BaseColor(_)
                 | Value::Choice(_)
-                | Value::Boolean(_),
+                | Value::Boolean(_)
+                | Value::Transfer(_),
             ) => continue,
         };
         if numbers.iter().any(|n| !param.allows(*n)) {
@@ -451,6 +475,8 @@ mod tests {
             Param::count("n", 1),
             Param::boolean("Flag", true).doc("d"),
             Param::number("x", 1.0).range(0.0, 1.0).doc("d").examples(&["0.5", "7", "07"]),
+            Param::opacity_transfer("glow", "fig6a").doc("d"),
+            Param::color_transfer("tint", "none").doc("d").examples(&["\"fig6a\"", "[[0, 1]]", "\"a.png\""]),
         ];
         let wrong = check_table(&params).join("\n");
         for part in [
@@ -463,6 +489,8 @@ mod tests {
             "\"Flag\" is not",
             "\"x\": the example 7 is wrong: \"x\" is 7, but must lie in 0 to 1",
             "\"x\": the example 07 is wrong: example:1:1: write 7 instead of 07",
+            "\"glow\": the default Text(\"fig6a\") does not fit",
+            "\"tint\": the example \"a.png\" is wrong: \"tint\" cannot use \"a.png\": no picture lies beside an example",
         ] {
             assert!(wrong.contains(part), "{part} is not in\n{wrong}");
         }

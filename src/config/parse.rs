@@ -25,6 +25,7 @@ pub(super) fn parse(source: &Source, file: u32, mistakes: &mut Mistakes) -> Text
     let root = Node { value: Tree::Broken, span: Span { file, start: 0, end: 0 } };
     let mut text = Text {
         name: source.name.as_str().into(),
+        path: source.path.clone(),
         text: String::new(),
         positions: Positions::new(b""),
         root,

@@ -10,13 +10,18 @@ use super::hint::{Hint, quote};
 use super::length::Length;
 use super::param::{Kind, LARGEST, Param, Value};
 use super::parse::parse;
+use super::pictures::Pictures;
 use super::selector::Selector;
 use super::source::{Source, Texts};
 use super::syntax::{Member, Node, Span, Tree};
+use super::transfer::{MAX_POINTS, Nodes, Transfer, TransferKind, Written, points};
 use super::values::Values;
 
 /// A problem and the value it lies in.
-type Wrong = (Span, Problem);
+pub(super) type Wrong = (Span, Problem);
+
+/// Reads a picture that is named by its path, or says why that is not possible.
+type ReadPicture<'a> = dyn FnMut(TransferKind, &str) -> Result<Nodes, String> + 'a;
 
 /// What goes through a style: its texts, and what was found so far.
 pub(super) struct Reader<'a> {
@@ -26,13 +31,15 @@ pub(super) struct Reader<'a> {
     pub(super) warnings: Vec<Warning>,
     /// How many more warnings there are.
     pub(super) unlisted_warnings: usize,
+    pub(super) pictures: Pictures,
     told: HashSet<Notice>,
 }
 
 impl<'a> Reader<'a> {
     /// A reader of these texts, with the mistakes that parsing them found.
     pub(super) fn new(texts: &'a Texts, catalog: Catalog<'a>, mistakes: Mistakes) -> Self {
-        Self { texts, catalog, mistakes, warnings: Vec::new(), unlisted_warnings: 0, told: HashSet::new() }
+        let (warnings, pictures, told) = (Vec::new(), Pictures::default(), HashSet::new());
+        Self { texts, catalog, mistakes, warnings, unlisted_warnings: 0, pictures, told }
     }
 
     /// Notes a mistake, unless it is one of a value that cannot be read, which was said.
@@ -123,7 +130,10 @@ impl<'a> Reader<'a> {
     /// The same of what is told not to be drawn already.
     pub(super) fn set_of_undrawn(&mut self, values: &mut Values, index: usize, node: &Node) {
         let param = &values.params()[index];
-        match read(param, node, !self.mistakes.is_full()) {
+        let style = self.texts.0[node.span.file as usize].path.as_deref();
+        let pictures = &mut self.pictures;
+        let mut picture = |kind, name: &str| pictures.read(kind, name, style);
+        match read(param, node, !self.mistakes.is_full(), &mut picture) {
             Ok(value) => {
                 if let Some(meant) = color_of_shares(&value, node) {
                     self.warn(self.texts.place(node.span), Notice::NearlyBlack { name: param.name.to_owned(), meant });
@@ -205,7 +215,7 @@ pub(super) fn wrong_type(name: &str, expected: &str, node: &Node) -> Problem {
 }
 
 /// Reads one value as its parameter asks. With hints, the names of colours are searched for one that is near.
-fn read(param: &Param, node: &Node, with_hints: bool) -> Result<Value, Wrong> {
+fn read(param: &Param, node: &Node, with_hints: bool, picture: &mut ReadPicture<'_>) -> Result<Value, Wrong> {
     if node.value == Tree::Null && param.default == super::param::Default::Unset {
         return Ok(Value::Unset);
     }
@@ -227,6 +237,7 @@ fn read(param: &Param, node: &Node, with_hints: bool) -> Result<Value, Wrong> {
         Kind::Boolean | Kind::BooleanOrText => boolean(param, node).map(Value::Boolean),
         Kind::Numbers { len, ascending } => numbers(param, len, ascending, node).map(Value::Numbers),
         Kind::Vector => vector(param, node).map(Value::Vector),
+        Kind::Transfer(kind) => transfer(param, kind, node, picture).map(Value::Transfer),
     }
 }
 
@@ -237,7 +248,8 @@ pub(super) fn check_example(param: &Param, json: &str) -> Result<(), String> {
     if !mistakes.is_empty() {
         return Err(mistakes.to_string());
     }
-    read(param, &text.root, false).map(drop).map_err(|(_, problem)| problem.to_string())
+    let mut no_picture = |_, _: &str| Err("no picture lies beside an example".to_owned());
+    read(param, &text.root, false, &mut no_picture).map(drop).map_err(|(_, problem)| problem.to_string())
 }
 
 fn out_of_range(param: &Param, value: f64, allowed: String) -> Problem {
@@ -468,4 +480,32 @@ fn vector(param: &Param, node: &Node) -> Result<[f64; 3], Wrong> {
         }
         _ => Err((node.span, wrong_type(param.name, EXPECTED, node))),
     }
+}
+
+fn transfer(param: &Param, kind: TransferKind, node: &Node, picture: &mut ReadPicture<'_>) -> Result<Transfer, Wrong> {
+    let text = match &node.value {
+        Tree::Text(text) => text,
+        Tree::List(items) => return points::read(kind, param.name, node, items),
+        _ => {
+            let expected =
+                format!("the name of a preset, the path of a PNG picture, or a list of 1 to {MAX_POINTS} points");
+            return Err((node.span, wrong_type(param.name, &expected, node)));
+        }
+    };
+    if let Some(preset) = Transfer::preset(kind, text) {
+        return Ok(preset);
+    }
+    let (stem, extension) = text.rsplit_once('.').unwrap_or((text, ""));
+    if extension.eq_ignore_ascii_case("png") {
+        let unusable = |reason| Problem::Picture { name: param.name.to_owned(), picture: text.clone(), reason };
+        let nodes = picture(kind, text).map_err(|reason| (node.span, unusable(reason)))?;
+        return Ok(Transfer::new(Written::Picture(text.as_str().into()), nodes));
+    }
+    if extension.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        let write = format!("{}, exported as PNG", quote(&format!("{stem}.png")));
+        return Err((node.span, wrong_type_but(param.name, "a picture that ends in .png", node, Some(write))));
+    }
+    let mut hint = Hint::new(text, kind.presets().iter().map(|preset| preset.name));
+    hint.allowed.extend(["a picture that ends in .png".to_owned(), "a list of points".to_owned()]);
+    Err((node.span, not_a_choice(param, text, hint)))
 }

@@ -85,6 +85,8 @@ fn count_chars(bytes: &[u8]) -> u32 {
 #[derive(Debug)]
 pub(super) struct Text {
     pub(super) name: Arc<str>,
+    /// Where it lies, if it is a file: pictures are found relative to it.
+    pub(super) path: Option<PathBuf>,
     pub(super) text: String,
     pub(super) positions: Positions,
     pub(super) root: Node,

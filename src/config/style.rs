@@ -120,7 +120,7 @@ pub struct Style {
     pub overrides: Overrides,
     /// The texts of its files, for the source lines under messages.
     pub texts: SourceTexts,
-    /// The files it was read from, itself first, then its bases: what to watch for changes.
+    /// The files it was read from, itself first, then its bases, then its pictures: what to watch for changes.
     pub files: Vec<PathBuf>,
 }
 
@@ -194,12 +194,13 @@ pub(super) fn resolve(texts: &Texts, merged: Merged, catalog: &Catalog<'_>) -> R
     if reader.mistakes.is_empty() {
         shaders.warn_of_unused(&mut reader, &mapping, &listed_effects, basic);
     }
-    let Reader { mut mistakes, mut warnings, unlisted_warnings, .. } = reader;
+    let Reader { mut mistakes, mut warnings, unlisted_warnings, pictures, .. } = reader;
+    let files: Vec<PathBuf> = merged.files.into_iter().chain(pictures.into_files()).collect();
     let order = |place: &Place| (texts.0.iter().position(|text| text.name == place.file), place.start);
     warnings.sort_by_key(|warning| order(&warning.place));
     if !mistakes.is_empty() {
         mistakes.list.sort_by_key(|mistake| order(&mistake.place));
-        return Err(Mistakes { files: merged.files, warnings, unlisted_warnings, ..mistakes });
+        return Err(Mistakes { files, warnings, unlisted_warnings, ..mistakes });
     }
     let drawn = listed_effects.iter().map(|effect| effect.index).filter(|index| shaders.uses[*index].drawn).collect();
     Ok(Style {
@@ -217,7 +218,7 @@ pub(super) fn resolve(texts: &Texts, merged: Merged, catalog: &Catalog<'_>) -> R
         values,
         overrides: Overrides::new(texts, &merged.replaced),
         texts: SourceTexts::default(),
-        files: merged.files,
+        files,
     })
 }
 

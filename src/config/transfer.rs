@@ -245,3 +245,82 @@ impl Between {
         low + (high - low) * self.share
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn preset(kind: TransferKind, name: &str) -> Transfer {
+        Transfer::preset(kind, name).unwrap()
+    }
+
+    #[test]
+    fn tables_have_their_sizes() {
+        let opacity = preset(TransferKind::Opacity, "fig7a");
+        assert_eq!(opacity.opacity_nodes().len(), OPACITY_SIZE[0] * OPACITY_SIZE[1]);
+        assert!(opacity.color_nodes().is_empty() && opacity.kind() == TransferKind::Opacity);
+        let color = preset(TransferKind::Color, "fig6a");
+        assert_eq!(color.color_nodes().len(), COLOR_SIZE);
+        assert!(color.opacity_nodes().is_empty() && color.kind() == TransferKind::Color);
+        assert_eq!((opacity.color(0.5), color.opacity(0.5, 0.5)), ([1.0; 3], 1.0));
+    }
+
+    #[test]
+    fn nodes_are_the_function_and_straight_between() {
+        let opacity = preset(TransferKind::Opacity, "fig7a");
+        let [columns, rows] = OPACITY_SIZE;
+        for (i, node) in opacity.opacity_nodes().iter().enumerate() {
+            let (column, row) = (i % columns, i / columns);
+            let (curvature, depth) = (column as f64 / (columns - 1) as f64, row as f64 / (rows - 1) as f64);
+            assert_eq!(opacity.opacity(curvature, depth), f64::from(*node));
+        }
+        let color = preset(TransferKind::Color, "warm_cool");
+        for (i, node) in color.color_nodes().iter().enumerate() {
+            assert_eq!(color.color(i as f64 / 32.0 - 1.0), node.map(f64::from));
+        }
+        let (low, high) = (opacity.opacity(3.0 / 64.0, 0.0), opacity.opacity(4.0 / 64.0, 0.0));
+        assert!((opacity.opacity(3.5 / 64.0, 0.0) - (low + high) / 2.0).abs() < 1e-12);
+        let (near, far) = (opacity.opacity(0.5, 2.0 / 16.0), opacity.opacity(0.5, 3.0 / 16.0));
+        assert!((opacity.opacity(0.5, 2.25 / 16.0) - (0.75 * near + 0.25 * far)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn ends_hold_beyond_and_no_number_is_flat_and_near() {
+        let opacity = preset(TransferKind::Opacity, "fig7b");
+        assert_eq!(opacity.opacity(-0.5, 0.25), opacity.opacity(0.5, 0.25));
+        assert_eq!(opacity.opacity(-7.0, 9.0), opacity.opacity(1.0, 1.0));
+        assert_eq!(opacity.opacity(f64::INFINITY, f64::NEG_INFINITY), opacity.opacity(1.0, 0.0));
+        assert_eq!(opacity.opacity(f64::NAN, f64::NAN), opacity.opacity(0.0, 0.0));
+        let color = preset(TransferKind::Color, "fig6a");
+        assert_eq!((color.color(-7.0), color.color(f64::INFINITY)), (color.color(-1.0), color.color(1.0)));
+        assert_eq!(color.color(f64::NAN), color.color(0.0));
+    }
+
+    #[test]
+    fn presets_have_known_values() {
+        let at = |name, curvature, depth| preset(TransferKind::Opacity, name).opacity(curvature, depth);
+        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-6, "{a} is not {b}");
+        near(at("fig7a", 0.0, 0.0), 0.05);
+        near(at("fig7a", 0.0, 0.25), 0.45);
+        near(at("fig7a", 1.0, 0.0), 0.95);
+        near(at("fig7b", 0.0, 0.5), 0.12);
+        near(at("fig8d", 0.5, 0.5), 0.55);
+        near(at("constant", 0.3, 0.7), 1.0);
+        near(at("xray", 0.5, 0.9), 0.515);
+        near(at("ghost", 0.0, 0.5), 0.15);
+        // Far is more opaque than near in the paper's first two, and less in the last one.
+        for step in 0..=64 {
+            let curvature = f64::from(step) / 64.0;
+            for (name, sign) in [("fig7a", 1.0), ("fig7b", 1.0), ("fig8d", -1.0)] {
+                assert!(sign * (at(name, curvature, 1.0) - at(name, curvature, 0.0)) > 0.0, "{name} at {curvature}");
+            }
+        }
+        let color = |name, curvature| preset(TransferKind::Color, name).color(curvature);
+        near(color("fig6a", -1.0)[0], 1.6);
+        near(color("fig6a", 0.5)[2], 0.65);
+        near(color("fig6b", 0.0)[1], 0.5);
+        near(color("warm_cool", 1.0)[2], 1.1);
+        assert_eq!(color("none", 0.4), [1.0; 3]);
+        assert_eq!(color("ink", 0.0), [1.0; 3]);
+    }
+}

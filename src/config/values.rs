@@ -5,6 +5,7 @@ use super::error::Place;
 use super::length::Length;
 use super::param::{Param, Value};
 use super::selector::Selector;
+use super::transfer::Transfer;
 
 /// Where a value comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,6 +77,17 @@ impl Values {
     pub fn change_default(&mut self, name: &str, value: Value) {
         let index = self.index(name).expect("a table knows its own names");
         self.entries[index] = (value, Origin::Default);
+    }
+
+    /// The values of another table: those of its parameters that this one has as well, and the defaults of the others.
+    pub fn taken_by(&self, params: &'static [Param]) -> Self {
+        let mut taken = Self::defaults(params);
+        for (param, entry) in params.iter().zip(&mut taken.entries) {
+            if let Some(index) = self.index(param.name) {
+                entry.clone_from(&self.entries[index]);
+            }
+        }
+        taken
     }
 
     fn index(&self, name: &str) -> Option<usize> {
@@ -178,6 +190,14 @@ impl Values {
     pub fn boolean(&self, name: &str) -> bool {
         self.expect(name, "boolean", |value| match value {
             Value::Boolean(b) => Some(*b),
+            _ => None,
+        })
+    }
+
+    /// A transfer function.
+    pub fn transfer(&self, name: &str) -> &Transfer {
+        self.expect(name, "transfer function", |value| match value {
+            Value::Transfer(transfer) => Some(transfer),
             _ => None,
         })
     }

@@ -6,6 +6,7 @@ use serde_json::{Map, Number, Value, json};
 use super::{NOT_DRAWN, patterns, snippets};
 use crate::config::color::BaseColor;
 use crate::config::param::{Default, Kind, LARGEST, Param};
+use crate::config::transfer::{MAX_POINTS, TransferKind};
 
 /// The schemas that parameters share.
 pub(super) fn definitions() -> Map<String, Value> {
@@ -147,8 +148,37 @@ pub(super) fn param(param: &Param) -> Value {
             put("minItems", 3.into());
             put("maxItems", 3.into());
         }
+        Kind::Transfer(kind) => {
+            put("type", types(&["string", "array"]));
+            put("pattern", patterns::transfer(kind).into());
+            let presets = kind.presets().iter().map(|preset| preset.name).collect::<Vec<_>>().join(", ");
+            let no_transfer = format!("Neither {presets} nor a picture that ends in .png.");
+            put("patternErrorMessage", no_transfer.into());
+            put("items", point(kind));
+            put("minItems", 1.into());
+            put("maxItems", MAX_POINTS.into());
+            put("defaultSnippets", snippets::transfers(kind));
+        }
     }
     schema.into()
+}
+
+/// A control point of a transfer function.
+fn point(kind: TransferKind) -> Value {
+    let [few, many] = kind.widths();
+    let within = |(lowest, highest)| json!({ "type": "number", "minimum": number(lowest), "maximum": number(highest) });
+    let mut point = json!({
+        "type": "array",
+        "items": [within(kind.curvatures())],
+        "additionalItems": within(kind.values()),
+        "minItems": few,
+        "maxItems": many,
+    });
+    if many > few + 1 {
+        point["not"] = json!({ "minItems": few + 1, "maxItems": many - 1 });
+        point["errorMessage"] = format!("Write {few} or {many} numbers.").into();
+    }
+    point
 }
 
 /// An example of a table, which [`crate::config::param::check_table`] has tried in a test.

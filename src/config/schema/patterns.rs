@@ -4,6 +4,7 @@
 
 use crate::config::color::css_names;
 use crate::config::selector::{Attribute, AttributeValues, ObjectKind};
+use crate::config::transfer::TransferKind;
 
 /// White space as Rust's `trim` has it, which is what `\s` of JavaScript is but for one character each.
 const SPACE: &str = r"[\s\u0085]";
@@ -60,6 +61,11 @@ pub(super) fn color(words: &[&str]) -> String {
     let hex = "#(?:[0-9a-fA-F]{3,4}|[0-9a-fA-F]{6}|[0-9a-fA-F]{8})";
     let color = format!("{SPACE}*(?:{hex}|{}){SPACE}*", names.join("|"));
     if words.is_empty() { format!("^{color}$") } else { format!("^(?:{}|{color})$", words.join("|")) }
+}
+
+/// A preset of a transfer function, or a name that ends in `.png`.
+pub(super) fn transfer(kind: TransferKind) -> String {
+    format!(r"{}|\.[pP][nN][gG]$", one_of(kind.presets().iter().map(|preset| preset.name)))
 }
 
 /// A selector of one of some types, each with its own attributes; `None` is `*`.

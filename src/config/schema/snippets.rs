@@ -7,6 +7,7 @@ use super::param::default;
 use crate::config::catalog::{Catalog, Role};
 use crate::config::light;
 use crate::config::param::Kind;
+use crate::config::transfer::TransferKind;
 
 /// A whole small style.
 pub(super) fn whole_style() -> Value {
@@ -73,6 +74,23 @@ pub(super) fn lengths() -> Value {
 pub(super) fn words_and_lengths(words: &[&str]) -> Value {
     let words = words.iter().map(|word| json!({ "label": format!("{word:?}"), "body": word }));
     words.chain(lengths().as_array().cloned().unwrap_or_default()).collect()
+}
+
+/// Each preset of a transfer function, a picture, and control points.
+pub(super) fn transfers(kind: TransferKind) -> Value {
+    let presets = kind
+        .presets()
+        .iter()
+        .map(|preset| json!({ "label": format!("{:?}", preset.name), "description": preset.doc, "body": preset.name }));
+    let points = match kind {
+        TransferKind::Opacity => json!([["^${1:0}", "^${2:0.05}"], ["^${3:1}", "^${4:0.9}"]]),
+        TransferKind::Color => json!([["^${1:-1}", "^${2:1.5}"], ["^${3:0}", "^${4:1}"], ["^${5:1}", "^${6:0.3}"]]),
+    };
+    let own = [
+        json!({ "label": "points", "description": "Values at curvatures, straight between them.", "body": points }),
+        json!({ "label": "a picture", "description": "A PNG file beside the style.", "body": "${1:mine}.png" }),
+    ];
+    presets.chain(own).collect()
 }
 
 /// A colour in each way of writing it.

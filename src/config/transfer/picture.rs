@@ -146,3 +146,36 @@ impl Weights {
         self.shares.iter().zip(self.first..).map(|(share, pixel)| share * of_pixel(pixel)).sum()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn weights_are_shares_and_keep_the_ends() {
+        for pixels in [1, 2, 3, 16, 64, 65, 66, 100, 129, 256, 1000, 4096] {
+            for count in [COLOR_SIZE, OPACITY_SIZE[1]] {
+                for node in 0..count {
+                    let weights = Weights::new(node, count, pixels);
+                    assert!((weights.sum(|_| 1.0) - 1.0).abs() < 1e-12, "{pixels} pixels, node {node}");
+                    assert!(weights.first + weights.shares.len() <= pixels, "{pixels} pixels, node {node}");
+                    // A ramp stays one, but for how a pixel is cut in two.
+                    let ramp = weights.sum(|pixel| pixel as f64 / (pixels - 1).max(1) as f64);
+                    let due = if pixels == 1 { 0.0 } else { node as f64 / (count - 1) as f64 };
+                    assert!((ramp - due).abs() < 2e-3, "{pixels} pixels, node {node}: {ramp}");
+                }
+                let ends = [0, count - 1].map(|node| Weights::new(node, count, pixels).sum(|pixel| pixel as f64));
+                assert_eq!(ends, [0.0, (pixels - 1) as f64]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_larger_row_is_averaged() {
+        // 129 pixels are two for each node; one in two is full.
+        let weights = Weights::new(7, COLOR_SIZE, 129);
+        assert!((weights.sum(|pixel| (pixel % 2) as f64) - 0.5).abs() < 1e-12);
+        // As many pixels as nodes are the nodes.
+        assert_eq!(Weights::new(7, COLOR_SIZE, COLOR_SIZE).sum(|pixel| pixel as f64), 7.0);
+    }
+}

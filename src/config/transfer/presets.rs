@@ -24,12 +24,22 @@ pub const OPACITY: &[Preset] = &[
     Preset {
         name: "fig7a",
         doc: "Nearly clear where flat and near, nearly opaque where curved, and quickly opaque with depth: the front counts.",
-        points: &[&[0.00, 0.05, 0.45, 0.75, 0.92, 1.0], &[0.25, 0.25, 0.60, 0.85, 0.96, 1.0], &[0.75, 0.85, 0.94, 0.98, 1.00, 1.0], &[1.00, 0.95, 0.98, 1.00, 1.00, 1.0]],
+        points: &[
+            &[0.00, 0.05, 0.45, 0.75, 0.92, 1.0],
+            &[0.25, 0.25, 0.60, 0.85, 0.96, 1.0],
+            &[0.75, 0.85, 0.94, 0.98, 1.00, 1.0],
+            &[1.00, 0.95, 0.98, 1.00, 1.00, 1.0],
+        ],
     },
     Preset {
         name: "fig7b",
         doc: "Less weight in front and slower with depth: curved surfaces show over a wide range of depth.",
-        points: &[&[0.00, 0.03, 0.06, 0.12, 0.25, 0.60], &[0.25, 0.10, 0.14, 0.22, 0.38, 0.70], &[0.75, 0.55, 0.60, 0.68, 0.80, 0.95], &[1.00, 0.70, 0.75, 0.82, 0.92, 1.00]],
+        points: &[
+            &[0.00, 0.03, 0.06, 0.12, 0.25, 0.60],
+            &[0.25, 0.10, 0.14, 0.22, 0.38, 0.70],
+            &[0.75, 0.55, 0.60, 0.68, 0.80, 0.95],
+            &[1.00, 0.70, 0.75, 0.82, 0.92, 1.00],
+        ],
     },
     Preset {
         name: "fig8d",
@@ -84,9 +94,7 @@ static OPACITY_TABLES: LazyLock<Vec<Transfer>> = LazyLock::new(|| tables(Transfe
 static COLOR_TABLES: LazyLock<Vec<Transfer>> = LazyLock::new(|| tables(TransferKind::Color));
 
 fn tables(kind: TransferKind) -> Vec<Transfer> {
-    let of = |preset: &Preset| {
-        Transfer::new(Written::Preset(preset.name), points::nodes(kind, preset.points))
-    };
+    let of = |preset: &Preset| Transfer::new(Written::Preset(preset.name), points::nodes(kind, preset.points));
     kind.presets().iter().map(of).collect()
 }
 

@@ -11,4 +11,5 @@ mod selectors;
 mod source_lines;
 mod strays;
 mod syntax;
+pub mod transfers;
 mod warnings;
