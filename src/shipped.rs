@@ -23,7 +23,7 @@ macro_rules! shipped {
 
 /// The looks, in the order of the published table.
 pub const LOOKS: &[Shipped] = shipped!("styles", "advertisement"."json", "education"."json", "scientific"."json", "future"."json",
-             "illustrative"."json", "technical"."json");
+             "illustrative"."json", "technical"."json", "glass"."json", "xray"."json", "ghost"."json");
 
 /// The molecules: the published table's four first.
 pub const MOLECULES: &[Shipped] = shipped!(

@@ -294,7 +294,11 @@ fn is_opaque(shader: &ShaderUse) -> bool {
 
 /// Whether a style asks how surfaces bend.
 pub fn asks_for_bending(style: &Style) -> bool {
-    style.shaders.iter().filter_map(|shader| shading::shader_index(shader.shader)).any(|index| SHADERS[index].stylises())
+    style
+        .shaders
+        .iter()
+        .filter_map(|shader| shading::shader_index(shader.shader))
+        .any(|index| SHADERS[index].stylises())
 }
 
 /// Where the colours of the objects themselves come from. One colour for all lies in the material, which then covers
@@ -389,11 +393,7 @@ impl MaterialNumbers {
 const MOST_OF_A_LAYER: f32 = 1.0 - f32::EPSILON / 2.0;
 
 /// The materials of what is `used`, by number.
-pub fn materials(
-    style: &Style,
-    used: &[MaterialUse],
-    context: &MaterialContext<'_>,
-) -> Materials {
+pub fn materials(style: &Style, used: &[MaterialUse], context: &MaterialContext<'_>) -> Materials {
     let mut materials = Materials::default();
     for of in used {
         let shader_use = &style.shaders[of.shader];
@@ -404,7 +404,8 @@ pub fn materials(
         let set = materials.add(shader_index, &values, context);
         // A shader that stylises the light of another one has a set of that one's parameters as well.
         let lit_by = shader.lit_by(&values).and_then(shading::shader_index);
-        let lit = lit_by.map(|lit_by| (lit_by, materials.add(lit_by, &values.taken_by(SHADERS[lit_by].params()), context)));
+        let lit =
+            lit_by.map(|lit_by| (lit_by, materials.add(lit_by, &values.taken_by(SHADERS[lit_by].params()), context)));
         let (shade_shader, shade_index) = lit.unwrap_or((shader_index, set));
         let (stylist, stylist_index) = lit.map_or((0, 0), |_| (shader_index as u32 + 1, set));
         // What is blended in layers although it may cover all covers next to all.

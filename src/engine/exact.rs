@@ -12,12 +12,12 @@ use crate::effects::focus::Circles;
 use crate::effects::outline::OutlineParams;
 use crate::frame::objects::DrawList;
 use crate::frame::{MAX_LIGHTS, Materials};
+use crate::reference::curvature::Stylist;
 use crate::reference::{
     self, BrokenOff, Cylinder, HullLook, Lens, Look, Material, Meshes, Occlusion, Optics, Part, Picture, RowSink,
     Settings, Shade, Sphere, World,
 };
 use crate::scene::{Camera, Image, Pixels, Scene, srgb_from_linear};
-use crate::reference::curvature::Stylist;
 use crate::shading::{SHADERS, basic::BasicMaterial, curvature::CurvatureMaterial, toon::ToonMaterial};
 
 /// Draws stills of one scene in one style, on all cores.
@@ -94,7 +94,8 @@ impl Exact {
         let mut lighting = drawn.lighting.lighting(&camera);
         lighting.lights.truncate(MAX_LIGHTS);
         let optics = Optics::new(&camera, request.size);
-        let center = camera.view_from_world.as_dmat4().transform_point3(content.scene.bounding_sphere().center.as_dvec3());
+        let center =
+            camera.view_from_world.as_dmat4().transform_point3(content.scene.bounding_sphere().center.as_dvec3());
         let materials = shades(&materials, &content.style, &drawn.used, center);
         let world = world(list.unwrap_or_default(), &camera, content, &materials, &optics);
         let (mut occlusions, mut lens, mut layers, mut lines) = (Vec::new(), None, None, Vec::new());
@@ -268,7 +269,10 @@ mod tests {
     #[test]
     fn the_reference_knows_every_shader_and_effect() {
         // A new one needs its exact form in `shades` or `light_rows`.
-        assert_eq!(SHADERS.iter().map(|shader| shader.name()).collect::<Vec<_>>(), ["basic", "toon", "unlit", "curvature"]);
+        assert_eq!(
+            SHADERS.iter().map(|shader| shader.name()).collect::<Vec<_>>(),
+            ["basic", "toon", "unlit", "curvature"]
+        );
         assert_eq!(
             EFFECTS.iter().map(|effect| effect.name()).collect::<Vec<_>>(),
             ["ssaoPost", "outlinePost", "dofPost"]

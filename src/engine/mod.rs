@@ -495,7 +495,11 @@ fn resolve(content: &Content, drawn: Option<&Drawn>, height_px: u32) -> Resolved
     let materials = build::materials(style, &used, &context);
     let lighting = LightingProvider::new(style.lights.clone(), scene.bounding_sphere(), lengths);
     let looked_at = looked_at(scene, style);
-    Resolved { list, materials, drawn: Drawn { shaders, key, used, lengths, gain, picks, looked_at, lighting, height_px } }
+    Resolved {
+        list,
+        materials,
+        drawn: Drawn { shaders, key, used, lengths, gain, picks, looked_at, lighting, height_px },
+    }
 }
 
 /// Where that lies of which a post effect of the style needs the place, by the effect's number among the shaders.

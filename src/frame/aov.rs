@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-use super::{fullscreen, mesh};
 use super::visibility::{SceneBindings, Visibility};
+use super::{fullscreen, mesh};
 use crate::gpu::{Gpu, GpuError, Module};
 use crate::wgsl;
 

@@ -6,8 +6,8 @@ use super::objects::{self, Connector, DrawList, Material, ObjectBuffers};
 use super::occlusion::Reach;
 use super::shade::{ShadeKey, ShaderNeeds};
 use super::shadow::ShadowFilter;
-use super::visibility::DrawnKinds;
 use super::texels::KeptTexture;
+use super::visibility::DrawnKinds;
 use crate::config::Values;
 use crate::gpu::{Gpu, GpuError, KeptBuffer};
 use crate::shading::{MAX_MATERIALS, MaterialContext, SHADERS};
@@ -129,9 +129,8 @@ impl Needs {
             shader,
             features: materials.features.get(&shader).copied().unwrap_or(0),
             only_material: {
-                let uses = |material: &Material| {
-                    material.shader as usize == shader || material.stylist as usize == shader + 1
-                };
+                let uses =
+                    |material: &Material| material.shader as usize == shader || material.stylist as usize == shader + 1;
                 let mut using = (0..).zip(&materials.common).filter(|(_, material)| uses(material));
                 match (using.next(), using.next()) {
                     (Some((material, _)), None) => Some(material),

@@ -61,8 +61,7 @@ impl Stylist {
         }
         let signed = (f64::from(m.gain) * kappa).tanh();
         let width_px = f64::from(m.contour_px) + f64::from(m.contour_world) / pixel_world;
-        let rim =
-            if width_px > 0.0 { ((width_px - bent.rim_px) / footprint_px + 0.5).clamp(0.0, 1.0) } else { 0.0 };
+        let rim = if width_px > 0.0 { ((width_px - bent.rim_px) / footprint_px + 0.5).clamp(0.0, 1.0) } else { 0.0 };
         let contour = f64::from(m.contour);
         let depth = 0.5 * ((hit.t + self.center.z) / f64::from(m.radius) + 1.0);
         Bend {

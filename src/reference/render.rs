@@ -333,9 +333,10 @@ impl Picture<'_> {
             };
             let surface = self.world.surface(ray, hit);
             let material = &self.materials[surface.material as usize];
-            let bend = material.stylist.as_ref().map(|stylist| {
-                (stylist, stylist.bend(self.world, &self.optics, ray, hit, &surface, footprint_px))
-            });
+            let bend = material
+                .stylist
+                .as_ref()
+                .map(|stylist| (stylist, stylist.bend(self.world, &self.optics, ray, hit, &surface, footprint_px)));
             let opacity = bend.as_ref().map_or(material.opacity, |(stylist, bend)| stylist.opacity(*bend));
             if opacity > 0.0 {
                 let seen = Seen { pixel, index, shared_by, surface: &surface, hit };

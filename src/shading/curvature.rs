@@ -19,7 +19,7 @@ pub const PARAMS: &[Param] = &[
     OPACITY,
     Param::opacity_transfer("opacity_transfer", "fig7a")
         .doc("How much of what is behind a surface covers, by the size of its curvature and its depth.")
-        .examples(&[r#""glass""#, r#""fig7a""#, r#""fig7b""#, "[[0, 0.05, 0.4], [1, 0.9]]"]),
+        .examples(&[r#""glass""#, r#""fig7a""#, r#""fig7b""#, "[[0, 0.05, 0.4], [1, 0.9, 0.9]]"]),
     Param::color_transfer("color_transfer", "fig6a")
         .doc("Factor on the light of a surface, by its curvature.")
         .examples(&[r#""none""#, r#""fig6a""#, r#""ink""#]),

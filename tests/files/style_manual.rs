@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use restyle::config::manual::{FILE, Molecule, PICTURES, manual, strips};
+use restyle::config::manual::{FILE, PICTURES, Shown, manual, strips};
 use restyle::config::{SECTIONS, Source, load};
 use restyle::scene::Scene;
-use restyle::shipped::{MOLECULES, find};
+use restyle::shipped::{SCENES, find};
 
 use super::style_schema::{House, Verdict, at, judge};
 
@@ -62,13 +62,14 @@ fn every_picture_can_be_drawn() {
             assert_eq!(style.warnings, [], "{name}");
         }
         let scene = match strip.scene {
-            Molecule::Pdb(text) => Scene::from_bytes("manual.pdb", text.as_bytes()),
-            Molecule::Shipped(molecule) => {
-                let file = find(MOLECULES, molecule).unwrap_or_else(|| panic!("{name}: there is no {molecule:?}"));
+            Shown::Pdb(text) => Scene::from_bytes("manual.pdb", text.as_bytes()),
+            Shown::Shipped(shipped) => {
+                let file = SCENES.iter().find_map(|among| find(among, shipped));
+                let file = file.unwrap_or_else(|| panic!("{name}: there is no {shipped:?}"));
                 Scene::from_bytes(file.file, file.bytes)
             }
         };
-        assert!(scene.is_ok_and(|scene| !scene.molecule.atoms.is_empty()), "{name}");
+        assert!(scene.is_ok_and(|scene| !scene.molecule.atoms.is_empty() || !scene.assembly.is_empty()), "{name}");
     }
 }
 

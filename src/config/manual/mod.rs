@@ -9,7 +9,7 @@ use super::param::Param;
 use super::sections::SECTIONS;
 use super::selector::{AttributeValues, ObjectKind};
 
-pub use strips::{Molecule, Strip, strips};
+pub use strips::{Shown, Strip, strips};
 
 /// The manual's file.
 pub const FILE: &str = "style-files.md";

@@ -1,4 +1,4 @@
-//! The manual's pictures: for each parameter, one small molecule drawn with each of its examples in turn.
+//! The manual's pictures: for each parameter, one small scene drawn with each of its examples in turn.
 
 use serde_json::{Value, json};
 
@@ -6,9 +6,9 @@ use crate::config::catalog::{BASIC, Catalog, Role};
 use crate::config::param::Param;
 use crate::config::sections::SECTIONS;
 
-/// A molecule of the manual.
+/// What a picture of the manual shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Molecule {
+pub enum Shown {
     /// A shipped one, by its name.
     Shipped(&'static str),
     /// The text of a PDB file.
@@ -16,10 +16,10 @@ pub enum Molecule {
 }
 
 /// A single, a double and a triple bond; no shipped file says of what order its bonds are.
-const ACRYLONITRILE: Molecule = Molecule::Pdb(include_str!("acrylonitrile.pdb"));
+const ACRYLONITRILE: Shown = Shown::Pdb(include_str!("acrylonitrile.pdb"));
 
 /// Six atoms that touch: two chains, one of two residues.
-const GROUPS: Molecule = Molecule::Pdb(include_str!("groups.pdb"));
+const GROUPS: Shown = Shown::Pdb(include_str!("groups.pdb"));
 
 /// A strip of pictures that differ in one parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,7 +29,7 @@ pub struct Strip {
     /// The parameter.
     pub param: &'static str,
     /// What is drawn.
-    pub scene: Molecule,
+    pub scene: Shown,
     /// What is seen, for the manual.
     pub said: &'static str,
     /// A style for each picture, from left to right, as JSON.
@@ -44,13 +44,22 @@ impl Strip {
 }
 
 /// Parameters without pictures: they change nothing in a still, or no more than its noise, or only what others show is changed.
-const UNSEEN: [(&str, &str); 10] = [
+const UNSEEN: [(&str, &str); 19] = [
     ("geometry", "file_unit"),
     ("lights", "movable"),
     ("transparency", "memory_mb"),
     // As in basic.
     ("toon", "opacity"),
     ("unlit", "opacity"),
+    ("curvature", "base_color"),
+    ("curvature", "opacity"),
+    ("curvature", "smoothness"),
+    ("curvature", "metallic"),
+    ("curvature", "scale"),
+    ("curvature", "bias"),
+    ("curvature", "steps"),
+    ("curvature", "levels"),
+    ("curvature", "shadow_color"),
     ("ssaoPost", "samples"),
     ("ssaoPost", "blur"),
     ("ssaoPost", "applies_to"),
@@ -63,7 +72,7 @@ struct Setting {
     group: &'static str,
     /// Empty for all others of the group.
     param: &'static str,
-    scene: Molecule,
+    scene: Shown,
     said: &'static str,
     /// What the style has beside [`base`].
     style: &'static str,
@@ -74,35 +83,35 @@ const SETTINGS: &[Setting] = &[
     Setting {
         group: "camera",
         param: "orthographic",
-        scene: Molecule::Shipped("nanotube"),
+        scene: Shown::Shipped("nanotube"),
         said: "A nanotube, from close by.",
         style: r#"{ "camera": { "position": [0.15, 0.1, 2.2], "fov": 60, "zoom": 1.3 }, "geometry": { "scale": 0.3 } }"#,
     },
     Setting {
         group: "camera",
         param: "fov",
-        scene: Molecule::Shipped("sodium_chloride"),
+        scene: Shown::Shipped("sodium_chloride"),
         said: "A crystal of salt, turned; the camera steps back as the angle narrows.",
         style: r#"{ "lights": [{ "type": "directional", "position": [-1, 1.5, 1.5] }, { "type": "ambient", "intensity": 0.5 }] }"#,
     },
     Setting {
         group: "camera",
         param: "orient",
-        scene: Molecule::Shipped("alpha_helix"),
+        scene: Shown::Shipped("alpha_helix"),
         said: "A helix, which stands upright in its file.",
         style: r#"{ "geometry": { "scale": 0.4 } }"#,
     },
     Setting {
         group: "camera",
         param: "exposure",
-        scene: Molecule::Shipped("methane"),
+        scene: Shown::Shipped("methane"),
         said: "Methane.",
         style: r#"{ "camera": { "zoom": 1.4 } }"#,
     },
     Setting {
         group: "camera",
         param: "",
-        scene: Molecule::Shipped("caffeine"),
+        scene: Shown::Shipped("caffeine"),
         said: "Caffeine.",
         style: r#"{ "camera": { "fov": 35 } }"#,
     },
@@ -116,126 +125,147 @@ const SETTINGS: &[Setting] = &[
     Setting {
         group: "geometry",
         param: "",
-        scene: Molecule::Shipped("caffeine"),
+        scene: Shown::Shipped("caffeine"),
         said: "Caffeine.",
         style: r#"{ "camera": { "zoom": 1.25 }, "geometry": { "scale": 0.25, "bond_radius": "0.14A" } }"#,
     },
     Setting {
         group: "lights",
         param: "range",
-        scene: Molecule::Shipped("caffeine"),
+        scene: Shown::Shipped("caffeine"),
         said: "Caffeine, with a point light on its right.",
         style: r#"{ "lights": [{ "type": "point", "position": [1.4, 0.4, 0.8], "intensity": 1.5 }, { "type": "ambient", "intensity": 0.2 }] }"#,
     },
     Setting {
         group: "lights",
         param: "space",
-        scene: Molecule::Shipped("methane"),
+        scene: Shown::Shipped("methane"),
         said: "Methane, seen from its right; the light is written as coming from the left.",
         style: r#"{ "camera": { "position": [4, 0, 0], "zoom": 1.4 }, "lights": [{ "type": "directional", "position": [-3, 1, 1] }, { "type": "ambient", "intensity": 0.3 }] }"#,
     },
     Setting {
         group: "lights",
         param: "type",
-        scene: Molecule::Shipped("methane"),
+        scene: Shown::Shipped("methane"),
         said: "Methane; an ambient light has no direction.",
         style: r##"{ "camera": { "zoom": 1.4 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#d8d3cb" } }], "lights": [{ "type": "directional", "position": [-1, 1, 1] }] }"##,
     },
     Setting {
         group: "lights",
         param: "shadow",
-        scene: Molecule::Shipped("methane"),
+        scene: Shown::Shipped("methane"),
         said: "Methane, with light from behind one of its atoms on the right.",
         style: r##"{ "geometry": { "scale": 0.5 }, "camera": { "zoom": 1.8 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#e3c9a0" } }], "lights": [{ "type": "directional", "position": [2, 1.6, 0.9], "softness": 12, "strength": 0.8 }, { "type": "ambient", "intensity": 0.2 }] }"##,
     },
     Setting {
         group: "lights",
         param: "strength",
-        scene: Molecule::Shipped("methane"),
+        scene: Shown::Shipped("methane"),
         said: "Methane, with light from behind one of its atoms on the right.",
         style: r##"{ "geometry": { "scale": 0.5 }, "camera": { "zoom": 1.8 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#e3c9a0" } }], "lights": [{ "type": "directional", "position": [2, 1.6, 0.9], "shadow": "hard" }, { "type": "ambient", "intensity": 0.2 }] }"##,
     },
     Setting {
         group: "lights",
         param: "softness",
-        scene: Molecule::Shipped("methane"),
+        scene: Shown::Shipped("methane"),
         said: "Methane, with light from behind one of its atoms on the right.",
         style: r##"{ "geometry": { "scale": 0.5 }, "camera": { "zoom": 1.8 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#e3c9a0" } }], "lights": [{ "type": "directional", "position": [2, 1.6, 0.9], "shadow": "soft", "strength": 0.9 }, { "type": "ambient", "intensity": 0.2 }] }"##,
     },
     Setting {
         group: "lights",
         param: "",
-        scene: Molecule::Shipped("methane"),
+        scene: Shown::Shipped("methane"),
         said: "Methane.",
         style: r##"{ "camera": { "zoom": 1.4 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#d8d3cb" } }], "lights": [{ "type": "directional", "position": [-1, 1.5, 1.5] }, { "type": "ambient", "intensity": 0.3 }] }"##,
     },
     Setting {
         group: "toon",
         param: "color",
-        scene: Molecule::Shipped("methane"),
+        scene: Shown::Shipped("methane"),
         said: "Methane, with a `hull_size` of `\"30pt\"`.",
         style: r##"{ "camera": { "zoom": 1.3 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#f2a65a", "hull_size": "30pt" } }] }"##,
     },
     Setting {
         group: "toon",
         param: "specular_limit",
-        scene: Molecule::Shipped("methane"),
+        scene: Shown::Shipped("methane"),
         said: "Methane, with a white highlight.",
         style: r##"{ "camera": { "zoom": 1.4 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#c8553d", "specular_color": "white" } }] }"##,
     },
     Setting {
         group: "toon",
         param: "specular_color",
-        scene: Molecule::Shipped("methane"),
+        scene: Shown::Shipped("methane"),
         said: "Methane, with a `specular_limit` of `0.9`.",
         style: r##"{ "camera": { "zoom": 1.4 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#c8553d", "specular_limit": 0.9 } }] }"##,
     },
     Setting {
         group: "toon",
         param: "base_color",
-        scene: Molecule::Shipped("methane"),
+        scene: Shown::Shipped("methane"),
         said: "Methane.",
         style: r##"{ "camera": { "zoom": 1.4 } }"##,
     },
     Setting {
         group: "toon",
         param: "shadow_color",
-        scene: Molecule::Shipped("methane"),
+        scene: Shown::Shipped("methane"),
         said: "Methane, all in one colour, with a `bias` of `0.2`.",
         style: r##"{ "camera": { "zoom": 1.3 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#f2a65a", "bias": 0.2 } }] }"##,
     },
     Setting {
         group: "toon",
         param: "",
-        scene: Molecule::Shipped("methane"),
+        scene: Shown::Shipped("methane"),
         said: "Methane, all in one colour.",
         style: r##"{ "camera": { "zoom": 1.3 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#f2a65a" } }] }"##,
     },
     Setting {
         group: "basic",
         param: "base_color",
-        scene: Molecule::Shipped("methane"),
+        scene: Shown::Shipped("methane"),
         said: "Methane.",
         style: r##"{ "camera": { "zoom": 1.4 } }"##,
     },
     Setting {
         group: "basic",
         param: "smoothness",
-        scene: Molecule::Shipped("methane"),
+        scene: Shown::Shipped("methane"),
         said: "Methane, all in one colour, with a `metallic` of `0.5`.",
         style: r##"{ "camera": { "zoom": 1.4 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#a33b2e", "metallic": 0.5 } }] }"##,
     },
     Setting {
         group: "basic",
         param: "",
-        scene: Molecule::Shipped("methane"),
+        scene: Shown::Shipped("methane"),
         said: "Methane, all in one colour.",
         style: r##"{ "camera": { "zoom": 1.4 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#a33b2e" } }] }"##,
     },
     Setting {
+        group: "curvature",
+        param: "contour_emphasis",
+        scene: Shown::Shipped("bracket"),
+        said: "A bracket, with a `contour_width` of `0` and an `opacity_transfer` of `\"xray\"`.",
+        style: r##"{ "camera": { "zoom": 1.2 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#5a7f9c", "opacity_transfer": "xray", "contour_width": 0, "gain": 0.4 } }] }"##,
+    },
+    Setting {
+        group: "curvature",
+        param: "depth_range",
+        scene: Shown::Shipped("bracket"),
+        said: "A bracket, with an `opacity_transfer` of `\"fig7a\"`.",
+        style: r##"{ "camera": { "zoom": 1.2 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#5a7f9c", "opacity_transfer": "fig7a" } }] }"##,
+    },
+    Setting {
+        group: "curvature",
+        param: "",
+        scene: Shown::Shipped("bracket"),
+        said: "A bracket, with an `opacity_transfer` of `\"glass\"` and a `contour_width` of `4pt` where those do not change.",
+        style: r##"{ "camera": { "zoom": 1.2 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#5a7f9c", "opacity_transfer": "glass", "contour_width": "4pt" } }] }"##,
+    },
+    Setting {
         group: "outlinePost",
         param: "depth_step",
-        scene: Molecule::Shipped("sodium_chloride"),
+        scene: Shown::Shipped("sodium_chloride"),
         said: "A crystal of salt, with a `silhouette_width` of `14pt`.",
         style: r##"{ "geometry": { "scale": 0.6 }, "shaders": [{ "name": "shown", "properties": { "silhouette_width": "14pt" } }] }"##,
     },
@@ -249,56 +279,56 @@ const SETTINGS: &[Setting] = &[
     Setting {
         group: "outlinePost",
         param: "boundary_width",
-        scene: Molecule::Shipped("caffeine"),
+        scene: Shown::Shipped("caffeine"),
         said: "Caffeine, with `boundary` `object` and silhouettes of `6pt`.",
         style: r##"{ "geometry": { "scale": 0.6 }, "shaders": [{ "name": "shown", "properties": { "boundary": "object", "silhouette_width": "6pt" } }] }"##,
     },
     Setting {
         group: "outlinePost",
         param: "boundary_color",
-        scene: Molecule::Shipped("caffeine"),
+        scene: Shown::Shipped("caffeine"),
         said: "Caffeine, with `boundary` `object` and lines of `8pt`.",
         style: r##"{ "geometry": { "scale": 0.6 }, "shaders": [{ "name": "shown", "properties": { "boundary": "object", "boundary_width": "8pt", "silhouette_width": 0 } }] }"##,
     },
     Setting {
         group: "outlinePost",
         param: "crease_width",
-        scene: Molecule::Shipped("caffeine"),
+        scene: Shown::Shipped("caffeine"),
         said: "Caffeine, with silhouettes of `6pt`.",
         style: r##"{ "geometry": { "scale": 0.6 }, "shaders": [{ "name": "shown", "properties": { "silhouette_width": "6pt" } }] }"##,
     },
     Setting {
         group: "outlinePost",
         param: "crease_color",
-        scene: Molecule::Shipped("caffeine"),
+        scene: Shown::Shipped("caffeine"),
         said: "Caffeine, with creases of `8pt`.",
         style: r##"{ "geometry": { "scale": 0.6 }, "shaders": [{ "name": "shown", "properties": { "crease_width": "8pt" } }] }"##,
     },
     Setting {
         group: "outlinePost",
         param: "crease_angle",
-        scene: Molecule::Shipped("caffeine"),
+        scene: Shown::Shipped("caffeine"),
         said: "Caffeine, with creases of `6pt`.",
         style: r##"{ "geometry": { "scale": 0.6 }, "shaders": [{ "name": "shown", "properties": { "crease_width": "6pt" } }] }"##,
     },
     Setting {
         group: "outlinePost",
         param: "",
-        scene: Molecule::Shipped("caffeine"),
+        scene: Shown::Shipped("caffeine"),
         said: "Caffeine, with a `silhouette_width` of `8pt` where it is not the one that changes.",
         style: r##"{ "geometry": { "scale": 0.6 }, "shaders": [{ "name": "shown", "properties": { "silhouette_width": "8pt" } }] }"##,
     },
     Setting {
         group: "ssaoPost",
         param: "",
-        scene: Molecule::Shipped("arsenic_trioxide"),
+        scene: Shown::Shipped("arsenic_trioxide"),
         said: "A cage of arsenic and oxygen, with a `radius` of `4r` where it is not the one that changes.",
         style: r##"{ "geometry": { "scale": 0.5 }, "shaders": [{ "name": "shown", "properties": { "radius": "4r" } }] }"##,
     },
     Setting {
         group: "dofPost",
         param: "",
-        scene: Molecule::Shipped("benzene"),
+        scene: Shown::Shipped("benzene"),
         said: "Benzene from the side, with `layers` of `[0, 0.1, 0.3, 0.7]` and a `blur` of `70pt` where those do not change.",
         style: r##"{ "camera": { "position": [0.6, -2.2, 1.4] }, "shaders": [{ "name": "shown", "properties": { "layers": [0, 0.1, 0.3, 0.7], "blur": "70pt" } }] }"##,
     },
@@ -306,7 +336,7 @@ const SETTINGS: &[Setting] = &[
     Setting {
         group: "",
         param: "",
-        scene: Molecule::Shipped("methane"),
+        scene: Shown::Shipped("methane"),
         said: "Methane.",
         style: r##"{ "camera": { "zoom": 1.4 } }"##,
     },

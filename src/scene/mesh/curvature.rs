@@ -195,7 +195,11 @@ mod tests {
         let (assembly, _) = build_one(cube());
         let shape = &assembly.shapes[0];
         assert!(shape.bending().kappa.iter().all(|kappa| *kappa == 0.0));
-        assert!(shape.bending().creases.iter().all(|bits| (bits & 7).count_ones() == 2 && bits >> 3 == 7), "{:?}", shape.bending().creases);
+        assert!(
+            shape.bending().creases.iter().all(|bits| (bits & 7).count_ones() == 2 && bits >> 3 == 7),
+            "{:?}",
+            shape.bending().creases
+        );
     }
 
     #[test]
