@@ -288,6 +288,13 @@ fn png(size: [u32; 2], color: png::ColorType, depth: png::BitDepth, bytes: &[u8]
     file
 }
 
+/// 2x1 grey pixels, 51 and 153, in the passes of Adam7, which the encoder does not write.
+const INTERLACED: &[u8] = &[
+    137, 80, 78, 71, 13, 10, 26, 10, 0, 0, 0, 13, 73, 72, 68, 82, 0, 0, 0, 2, 0, 0, 0, 1, 8, 0, 0, 0, 1, 166, 78, 16,
+    192, 0, 0, 0, 12, 73, 68, 65, 84, 120, 156, 99, 48, 102, 152, 9, 0, 1, 54, 0, 205, 63, 53, 141, 210, 0, 0, 0, 0,
+    73, 69, 78, 68, 174, 66, 96, 130,
+];
+
 #[test]
 fn pictures_of_every_kind_are_read_as_numbers() {
     let folder = Folder::new("kinds");
@@ -311,6 +318,8 @@ fn pictures_of_every_kind_are_read_as_numbers() {
         folder.write("p.png", png([2, 1], color, One, &bytes));
         assert_eq!(folder.opacity().opacity(1.0, 0.0), 1.0, "{color:?}");
     }
+    folder.write("p.png", INTERLACED);
+    assert!((folder.opacity().opacity(0.5, 0.5) - 0.4).abs() < 1e-6);
     folder.write("p.png", png([2, 1], Rgba, Eight, &[0, 51, 255, 0, 255, 51, 0, 7]));
     let read = folder.color();
     assert_eq!((read.color(-1.0)[0], read.color(0.0)[0], read.color(1.0)[0]), (0.0, 1.0, 2.0));
