@@ -253,9 +253,13 @@ fn turn(engine: &mut Engine, args: &Args, count: u32) -> Result<(), Failure> {
 
 /// The files that a style and a scene name: what is on the command line is known without them.
 pub(super) fn files_read<'a>(style: &'a Style, scene: &'a Scene) -> Vec<(&'static str, &'a Path)> {
-    let bases = style.files.iter().map(|file| ("style's base", file.as_path()));
+    let is_picture = |file: &Path| file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+    let of_style = style.files.iter().map(|file| {
+        let what = if is_picture(file) { "style's picture" } else { "style's base" };
+        (what, file.as_path())
+    });
     let side_files = scene.files.iter().flat_map(|file| &file.side_files);
-    bases.chain(side_files.map(|file| ("scene's side file", file.as_path()))).collect()
+    of_style.chain(side_files.map(|file| ("scene's side file", file.as_path()))).collect()
 }
 
 /// Times of one picture in milliseconds.

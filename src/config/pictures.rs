@@ -30,7 +30,10 @@ impl Pictures {
         if self.read.len() >= MOST_PICTURES {
             return Err(format!("a style can name {MOST_PICTURES} pictures, and no more: use one of those again"));
         }
-        let read = read_picture(&path, |file| picture::read(kind, file)).map_err(|unreadable| unreadable.reason);
+        let read = read_picture(&path, |file| picture::read(kind, file)).map_err(|unreadable| {
+            let is_missing = unreadable.path.is_some_and(|path| !path.exists());
+            unreadable.reason + if is_missing { "; a picture is found beside the style that names it" } else { "" }
+        });
         self.note(&path);
         self.read.insert((path, kind), read.clone());
         read

@@ -98,7 +98,7 @@ impl TransferKind {
         };
         format!(
             "the name of a preset, a list of 1 to {MAX_POINTS} points `{few}` or `{many}` in order of curvature, \
-             {curvatures}, or the path of a PNG picture, such as `\"mine.png\"` beside the style: {picture}"
+             {curvatures}, or the path of a PNG picture beside the style, such as `\"mine.png\"`: {picture}"
         )
     }
 

@@ -12,6 +12,7 @@ use restyle::shipped::LOOKS;
 use serde_json::Value;
 
 use super::style_files::mutations::Random;
+use super::style_files::transfers::CURVATURE;
 
 /// The catalog of the program.
 pub struct House(pub Vec<CatalogEntry>);
@@ -19,6 +20,13 @@ pub struct House(pub Vec<CatalogEntry>);
 impl House {
     pub fn new() -> House {
         House(engine::catalog())
+    }
+
+    /// The same with a shader that has transfer functions.
+    fn with_transfers() -> House {
+        let mut house = House::new();
+        house.0.push(CatalogEntry { name: "transferring", ..CURVATURE });
+        house
     }
 
     pub fn catalog(&self) -> Catalog<'_> {
@@ -94,12 +102,13 @@ fn every_style_of_the_house_is_valid() {
 }
 
 /// What only the loader can know, with the reason why no schema can. Any other mistake, the schema finds as well.
-const BEYOND_A_SCHEMA: [(&str, &str); 6] = [
+const BEYOND_A_SCHEMA: [(&str, &str); 7] = [
     ("duplicate_key", "of two equal keys, it sees the last"),
     ("duplicate_name", "it cannot compare the entries of a list in one of their keys"),
     ("unknown_name", "it cannot know which names the file declares"),
     ("effect_as_shader", "it cannot follow a name to its entry"),
     ("shader_as_effect", "it cannot follow a name to its entry"),
+    ("picture", "it reads no pictures"),
     ("meaningless", "it compares no two values, such as camera.position and camera.target"),
 ];
 
@@ -305,6 +314,22 @@ const VALUES: &[&str] = &[
     "\" center\"",
     "\"+2pt\"",
     "\" .5A\"",
+    "\"fig7a\"",
+    "\"fig6a\"",
+    "\"mine.png\"",
+    "\"mine.PNG\"",
+    "\"minepng\"",
+    "\"mine.jpg\"",
+    "[[0, 1]]",
+    "[[-0.5, 1]]",
+    "[[0, 0.1, 0.9], [1, 1, 1]]",
+    "[[0, 0.1, 0.9, 1]]",
+    "[[0, 1, 2, 3]]",
+    "[[-1, 1.5, 2, 0], [1, 1, 1, 1]]",
+    "[[0, 1], [0, 0.5]]",
+    "[[0, 1], [1, 0.5, 0.5]]",
+    "[[0, 1], \"xray\"]",
+    "[[0, null]]",
 ];
 
 /// Keys that reach further than those of the styles.
@@ -439,13 +464,14 @@ fn misspelt(quoted: &str, random: &mut Random) -> String {
 fn schema_and_loader_agree_on_damaged_styles() {
     /// Texts that are tried.
     const MUTATIONS: usize = 12_000;
-    let house = House::new();
+    let house = House::with_transfers();
     let validator = house.validator();
     let mut texts: Vec<String> = styles().into_iter().map(|(_, text)| text).collect();
     // Every key of every table, with its default and its examples.
     texts.push(everything(&house));
     texts.push(EXTENDING.to_owned());
     texts.push(NEAR.to_owned());
+    texts.push(PICTURED.to_owned());
     texts.push(UNKNOWN.to_owned());
     let pool: Vec<(String, Vec<Token>)> = texts.iter().map(|text| (text.clone(), tokens(text))).collect();
     let mut random = Random(0x5C4E_3A00_0001);
@@ -484,6 +510,10 @@ const UNKNOWN: &str = r#"{ "mapping": { "mesh": "glass", "post_effects": ["outli
 
 /// A small style that one number makes meaningless: the camera then stands where it looks.
 const NEAR: &str = r#"{ "camera": { "position": [0, 0, 1], "target": [0, 0, 0] } }"#;
+
+/// A small style with a picture, which only a style that is a file can have.
+const PICTURED: &str = r#"{ "shaders": [{ "name": "a", "shader": "transferring",
+    "properties": { "opacity_transfer": "a.png", "color_transfer": [[-1, 1, 1, 2], [0, 1, 1, 1], [1, 0.5, 0, 0]] } }] }"#;
 
 /// A style with every key that there is.
 fn everything(house: &House) -> String {
@@ -528,7 +558,7 @@ fn a_style_with_every_key_loads_and_is_valid() {
 
 #[test]
 fn every_kind_of_value_is_judged_alike() {
-    let house = House::new();
+    let house = House::with_transfers();
     let validator = house.validator();
     let mut tried = 0;
     let mut try_all = |style: &dyn Fn(&str) -> String| {
@@ -565,6 +595,38 @@ fn every_kind_of_value_is_judged_alike() {
         judge(&house, &validator, &format!("{{ {key}: {{}} }}"));
     }
     assert!(tried > 3000, "{tried}");
+}
+
+#[test]
+fn what_the_loader_takes_as_a_transfer_function_is_offered() {
+    let house = House::with_transfers();
+    let validator = house.validator();
+    let verdict = |key: &str, value: &str| {
+        let properties = format!("{{ {key:?}: {value} }}");
+        let text = format!(
+            "{{ \"shaders\": [{{ \"name\": \"a\", \"shader\": \"transferring\", \"properties\": {properties} }}] }}"
+        );
+        judge(&house, &validator, &text)
+    };
+    let schema = house.schema();
+    for key in ["opacity_transfer", "color_transfer"] {
+        let found = schema.pointer(&format!("/definitions/transferring_properties/properties/{key}")).unwrap();
+        let offered = found["defaultSnippets"].as_array().unwrap();
+        assert!(offered.len() > 5 && found["markdownDescription"].as_str().unwrap().contains("\n- `\""), "{found}");
+        for name in offered.iter().filter_map(|offer| offer["body"].as_str()).filter(|body| !body.ends_with(".png")) {
+            assert_eq!(verdict(key, &format!("{name:?}")), Verdict::BothTake, "{name}");
+        }
+        assert_eq!(verdict(key, "[[0, 1], [1, 0.5]]"), Verdict::BothTake);
+        for value in ["[]", "[[0]]", "[[0, -1]]", "[[2, 1]]", "[0, 1]", "0", "null", "\"fig\"", "\"a.jpg\""] {
+            assert_eq!(verdict(key, value), Verdict::BothRefuse, "{key}: {value}");
+        }
+        assert_eq!(verdict(key, "\"a.png\""), Verdict::OnlyLoaderRefuses(vec!["picture"]));
+        assert_eq!(verdict(key, "[[1, 1], [0, 1]]"), Verdict::OnlyLoaderRefuses(vec!["meaningless"]));
+    }
+    assert_eq!(verdict("opacity_transfer", "[[0, 1, 0]]"), Verdict::BothTake);
+    assert_eq!(verdict("color_transfer", "[[0, 1, 0]]"), Verdict::BothRefuse);
+    assert_eq!(verdict("color_transfer", "[[-1, 1, 0, 2]]"), Verdict::BothTake);
+    assert_eq!(verdict("opacity_transfer", "[[0, 1, 0, 0]]"), Verdict::BothRefuse);
 }
 
 #[test]

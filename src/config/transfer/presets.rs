@@ -23,7 +23,7 @@ pub struct Preset {
 pub const OPACITY: &[Preset] = &[
     Preset {
         name: "fig7a",
-        doc: "Nearly clear where flat and near, nearly opaque where curved, and quickly opaque with depth: the front counts.",
+        doc: "Nearly clear where flat and near, nearly opaque where curved; all soon opaque with depth, which shows the front.",
         points: &[
             &[0.00, 0.05, 0.45, 0.75, 0.92, 1.0],
             &[0.25, 0.25, 0.60, 0.85, 0.96, 1.0],

@@ -5,6 +5,7 @@ use std::path::Path;
 use restyle::config::{Source, load, load_with};
 
 use super::catalog::{EARLY, LATER};
+use super::transfers::GLASS;
 
 /// Mutations in all, unless `RESTYLE_MUTATIONS` sets another number.
 const MUTATIONS: usize = 10_000;
@@ -68,7 +69,17 @@ const PIECES: &[&str] = &[
     "(1, 2, 3)",
     "\"a\": ",
     "{ \"name\": \"a\" },",
+    "[0.5, 1]",
+    "[0, 0.1, 0.9]",
+    "\"a.png\"",
 ];
+
+/// A style with transfer functions, for [`GLASS`].
+const TRANSFERS: &str = r#"{ "mapping": { "*": "g" }, "shaders": [
+    { "name": "g", "shader": "curvature", "properties": { "opacity_transfer": "xray", "color_transfer": "ink" } },
+    { "name": "h", "shader": "curvature", "properties": {
+        "opacity_transfer": [[0, 0.1, 0.9], [0.5, 0.5, 0.9], [1, 1, 1]],
+        "color_transfer": [[-1, 1, 1.5, 2], [0, 1, 1, 1], [0.5, 0.75, 0.25, 0]] } }] }"#;
 
 fn mutate(text: &[u8], others: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
     let mut bytes = text.to_vec();
@@ -128,7 +139,8 @@ fn swap_token(text: &[u8], others: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
 fn damaged_styles_never_panic() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/prost2016");
     let names = ["listing1.json", "advertisement.json", "education.json", "scientific.json", "future.json"];
-    let texts: Vec<Vec<u8>> = names.iter().map(|name| std::fs::read(folder.join(name)).unwrap()).collect();
+    let mut texts: Vec<Vec<u8>> = names.iter().map(|name| std::fs::read(folder.join(name)).unwrap()).collect();
+    texts.push(TRANSFERS.as_bytes().to_vec());
     let mut random = Random(0x5EED_0F57_71E5);
     let (mut loaded, mut refused) = (0, 0);
     let mutations = std::env::var("RESTYLE_MUTATIONS").map_or(MUTATIONS, |number| number.parse().unwrap());
@@ -138,7 +150,12 @@ fn damaged_styles_never_panic() {
         let damage = if random.below(2) == 0 { mutate } else { swap_token };
         let source = Source::new("s.json", damage(text, &texts, &mut random));
         let loader = |_: &str, _: &Source| Ok(Source::new("base.json", texts[i % texts.len()].clone()));
-        match load_with(&source, if i % 2 == 0 { &EARLY } else { &LATER }, &loader) {
+        let catalog = match (i % texts.len() < names.len(), i / texts.len() % 2) {
+            (true, 0) => &EARLY,
+            (true, _) => &LATER,
+            (false, _) => &GLASS,
+        };
+        match load_with(&source, catalog, &loader) {
             Ok(style) => {
                 loaded += 1;
                 assert!(style.basic < style.shaders.len());
