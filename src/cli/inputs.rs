@@ -325,7 +325,8 @@ mod tests {
     fn a_slip_in_the_name_of_a_look_is_met_with_the_nearest() {
         let said = load("slip", "{ \"extends\": \"eduction.json\" }", None).unwrap_err();
         let due = "cannot extend \"eduction.json\": there is no such file, and no shipped look of this name; \
-                   did you mean \"education\"? allowed: advertisement, education, scientific, future, illustrative, technical";
+                   did you mean \"education\"? allowed: advertisement, education, scientific, future, illustrative, technical, glass, \
+                   xray, ghost";
         assert!(said.lines().next().is_some_and(|line| line.ends_with(due)), "{said}");
         let said = load("slip", "{ \"extends\": \"looks/education.json\" }", None).unwrap_err();
         assert!(said.lines().next().is_some_and(|line| line.ends_with(": there is no such file")), "{said}");

@@ -18,7 +18,6 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-use crate::config::param::Param;
 use crate::config::{CatalogEntry, LightKind, ObjectKind, Role, Shadow, Style, Values};
 use crate::effects::{self, Depths, EFFECTS, EffectContext, effect_index};
 use crate::frame::objects::{DrawList, MOST_PICKS};
@@ -36,9 +35,6 @@ pub use crate::gpu::{Counters, Gpu, GpuError};
 pub use live::{Part, Refusal, Reload, ReloadTimes, Sources, source_tree_shaders};
 pub use tiles::TileError;
 
-/// Shaders and effects of the contract that this version names but does not draw.
-const NOT_DRAWN: [(&str, Role, &str, &[Param]); 0] = [];
-
 /// Why a frame lacks an effect that its style does not ask for.
 const NOT_LISTED: &str = "post_effects does not list it";
 
@@ -49,11 +45,10 @@ pub const DRAWN_KINDS: &[ObjectKind] = &[ObjectKind::Atom, ObjectKind::Connector
 pub fn catalog() -> Vec<CatalogEntry> {
     let drawn = SHADERS.iter().map(|shader| (shader.name(), Role::Object, shader.doc(), shader.params()));
     let effects = EFFECTS.iter().map(|effect| (effect.name(), Role::PostEffect, effect.doc(), effect.params()));
-    let drawn =
-        drawn.chain(effects).map(|(name, role, doc, params)| CatalogEntry { name, role, doc, params, drawn: true });
-    let named =
-        NOT_DRAWN.iter().map(|&(name, role, doc, params)| CatalogEntry { name, role, doc, params, drawn: false });
-    drawn.chain(named).collect()
+    drawn
+        .chain(effects)
+        .map(|(name, role, doc, params)| CatalogEntry { name, role, doc, params, drawn: true })
+        .collect()
 }
 
 /// What to draw, and how finely.

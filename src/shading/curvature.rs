@@ -43,7 +43,7 @@ pub const PARAMS: &[Param] = &[
     Param::number("contour_emphasis", 0.0)
         .range(0.0, 1.0)
         .doc("How much of the curvature is that of the picture, which grows towards silhouettes.")
-        .examples(&["0", "0.5", "1"]),
+        .examples(&["0", "1"]),
     Param::choice("shading", SHADING, "basic")
         .doc("The shader that lights the surfaces; the parameters below are its own.")
         .examples(&[r#""basic""#, r#""toon""#, r#""unlit""#]),

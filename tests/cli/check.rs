@@ -69,8 +69,8 @@ fn tools_read_json() {
                 {
                     "code": "unknown_name", "file": "wrong.json", "path": "mapping.atom",
                     "line": 3, "column": 24, "end_line": 3, "end_column": 31, "start": 53, "end": 60,
-                    "message": "no shader is called \"tooon\"; did you mean \"toon\"? allowed: basic, toon, unlit",
-                    "suggestion": "toon", "allowed": ["basic", "toon", "unlit"],
+                    "message": "no shader is called \"tooon\"; did you mean \"toon\"? allowed: basic, toon, unlit, curvature",
+                    "suggestion": "toon", "allowed": ["basic", "toon", "unlit", "curvature"],
                 },
             ],
             "warnings": [],

@@ -108,7 +108,7 @@ fn json_is_one_line_with_the_keys_of_the_manual() {
 fn a_gallery_is_a_folder_that_opens_from_disk() {
     let Some(folder) = Folder::with_adapter("gallery") else { return };
     folder.write("a b&c.xyz", "1\n\nC 0 0 0\n");
-    folder.write("glass.json", r#"{ "mapping": { "*": "curvature" } }"#);
+    folder.write("glass.json", r#"{ "shaders": [{ "name": "unused", "shader": "toon" }] }"#);
     let args = ["gallery", "c60", "a b&c.xyz", "-s", "education", "-s", "glass.json", "-o", "new/sheet"];
     let outcome = folder.run_all(&[&args[..], &["--size", "32x32", "--samples", "1"]].concat()).done();
     assert!(outcome.out.contains("4 pictures") && outcome.out.contains("index.html"), "{}", outcome.out);

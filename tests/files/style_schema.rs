@@ -69,7 +69,7 @@ fn styles() -> Vec<(String, String)> {
         }
     }
     styles.sort();
-    assert_eq!(styles.len(), 11);
+    assert_eq!(styles.len(), 14);
     styles
 }
 
@@ -472,7 +472,7 @@ fn schema_and_loader_agree_on_damaged_styles() {
     texts.push(EXTENDING.to_owned());
     texts.push(NEAR.to_owned());
     texts.push(PICTURED.to_owned());
-    texts.push(UNKNOWN.to_owned());
+    texts.push(TRANSFERS.to_owned());
     let pool: Vec<(String, Vec<Token>)> = texts.iter().map(|text| (text.clone(), tokens(text))).collect();
     let mut random = Random(0x5C4E_3A00_0001);
     let (mut taken, mut refused, mut only_loader) = (0, 0, BTreeMap::<&str, u32>::new());
@@ -504,9 +504,9 @@ const EXTENDING: &str = r##"{ "extends": "education.json", "camera": { "fov": 20
                 { "name": "ink", "shader": "unlit", "properties": { "base_color": "#101010" } },
                 { "name": "glass", "shader": "curvature", "properties": { "gain": 3, "opacity": 0.5 } }] }"##;
 
-/// Properties of a shader that is not drawn yet: none of them is known, so that they may hold anything.
-const UNKNOWN: &str = r#"{ "mapping": { "mesh": "glass", "post_effects": ["outlinePost"] }, "shaders": [{ "name": "glass", "shader": "curvature", "properties":
-    { "gain": 3, "contour": 0.5, "opacity_transfer": [[0, 1], [1, 0.2]], "depth_range": "auto", "note": null } }] }"#;
+/// A style with transfer functions in all forms that need no file.
+const TRANSFERS: &str = r#"{ "mapping": { "mesh": "glass", "post_effects": ["outlinePost"] }, "shaders": [{ "name": "glass", "shader": "curvature", "properties":
+    { "gain": 3, "contour": 0.5, "opacity_transfer": [[0, 1, 0.5], [1, 0.2, 0]], "depth_range": [0, 0.5], "color_transfer": "ink" } }] }"#;
 
 /// A small style that one number makes meaningless: the camera then stands where it looks.
 const NEAR: &str = r#"{ "camera": { "position": [0, 0, 1], "target": [0, 0, 0] } }"#;

@@ -355,3 +355,48 @@ fn shaders_of_a_source_tree_are_followed() {
     assert_eq!(live.taken(), Part::Shaders);
     assert_eq!(middle(&mut live), [0, 255, 0]);
 }
+/// A PNG of one grey pixel.
+fn pixel(grey: u8) -> Vec<u8> {
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, 1, 1);
+    encoder.set_color(png::ColorType::Grayscale);
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&[grey]).unwrap();
+    writer.finish().unwrap();
+    file
+}
+
+#[test]
+fn a_picture_of_a_transfer_function_is_followed() {
+    let style = r#"{ "mapping": { "*": "g" }, "shaders": [{ "name": "g", "shader": "curvature",
+        "properties": { "opacity_transfer": "p.png" } }] }"#;
+    let Some(mut live) = Live::new("picture", &[("s.json", style), ("m.xyz", MOLECULE)]) else { return };
+    let opacity = |live: &Live| {
+        let style = live.engine.style().unwrap();
+        let used = style.shaders.iter().find(|used| used.name == "g").unwrap();
+        used.values.transfer("opacity_transfer").opacity(0.5, 0.5)
+    };
+    assert!(live.refused().1.to_string().contains("cannot use \"p.png\": there is no such file"));
+    // Longer than the time between two looks at the files.
+    live.silent();
+    live.silent();
+    live.silent();
+    fs::write(live.path("p.png"), pixel(0)).unwrap();
+    assert_eq!(live.taken(), Part::Style);
+    assert_eq!(opacity(&live), 0.0);
+    fs::write(live.path("p.png"), pixel(255)).unwrap();
+    assert_eq!(live.taken(), Part::Style);
+    assert_eq!(opacity(&live), 1.0);
+    // The same content again is no change, a broken one is told, and the picture stays.
+    fs::write(live.path("p.png"), pixel(255)).unwrap();
+    live.silent();
+    fs::write(live.path("p.png"), &pixel(255)[..40]).unwrap();
+    assert!(live.refused().1.to_string().contains("this PNG is broken"));
+    assert_eq!(opacity(&live), 1.0);
+    // By rename, as painting programs save.
+    fs::write(live.path("p.png.new"), pixel(51)).unwrap();
+    fs::rename(live.path("p.png.new"), live.path("p.png")).unwrap();
+    assert_eq!(live.taken(), Part::Style);
+    assert!((opacity(&live) - 0.2).abs() < 1e-6);
+    live.silent();
+}

@@ -3,6 +3,7 @@
 mod basic;
 mod brdf;
 mod brdf_table;
+mod curvature;
 mod environment;
 mod focus;
 mod furnace;
