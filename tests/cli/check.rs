@@ -38,7 +38,7 @@ fn mistakes_are_listed_with_their_lines_and_fail_the_command() {
         "wrong.json:2:15 (camera.fovv): camera has no \"fovv\"; did you mean \"fov\"? allowed: orthographic, bgcolor, fov, exposure, zoom, orient, position, target, up\n\
          2 |   \"camera\": { \"fovv\": 30 },\n  \
            |               ^^^^^^\n\
-         wrong.json:3:24 (mapping.atom): no shader is called \"tooon\"; did you mean \"toon\"? allowed: basic, toon, unlit\n\
+         wrong.json:3:24 (mapping.atom): no shader is called \"tooon\"; did you mean \"toon\"? allowed: basic, toon, unlit, curvature\n\
          3 |   \"mapping\": { \"atom\": \"tooon\" }\n  \
            |                        ^^^^^^^\n\
          fine.json:1:25 (shaders[0].name): warning: shader \"a\" draws nothing: name it in mapping, or remove it\n\

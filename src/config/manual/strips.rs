@@ -169,7 +169,7 @@ const SETTINGS: &[Setting] = &[
         param: "softness",
         scene: Shown::Shipped("methane"),
         said: "Methane, with light from behind one of its atoms on the right.",
-        style: r##"{ "geometry": { "scale": 0.5 }, "camera": { "zoom": 1.8 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#e3c9a0" } }], "lights": [{ "type": "directional", "position": [2, 1.6, 0.9], "shadow": "soft", "strength": 0.9 }, { "type": "ambient", "intensity": 0.2 }] }"##,
+        style: r##"{ "geometry": { "scale": 0.5 }, "camera": { "zoom": 1.8 }, "shaders": [{ "name": "shown", "properties": { "base_color": "#e3c9a0" } }], "lights": [{ "type": "directional", "position": [2, 1.6, 0.9], "shadow": "soft", "strength": 1 }, { "type": "ambient", "intensity": 0.2 }] }"##,
     },
     Setting {
         group: "lights",
