@@ -46,9 +46,9 @@ done
 convert "$work"/row_{c60,arsenic_trioxide,anthracene,magnesium}.png -append -strip -colors 255 png8:table1.png
 
 # All looks on four shipped scenes.
-"$restyle" gallery gearbox c60 alpha_helix caffeine -o "$work/gallery" --size 210x210 >/dev/null 2>&1
+"$restyle" gallery gearbox c60 alpha_helix caffeine -o "$work/gallery" --size 160x160 >/dev/null 2>&1
 for scene in gearbox c60 alpha_helix caffeine; do
-  convert "$work/gallery/$scene".{advertisement,education,scientific,future,illustrative,technical}.png +append "$work/row_$scene.png"
+  convert "$work/gallery/$scene".{advertisement,education,scientific,future,illustrative,technical,glass,xray,ghost}.png +append "$work/row_$scene.png"
 done
 convert "$work"/row_{gearbox,c60,alpha_helix,caffeine}.png -append -strip +dither -colors 255 png8:gallery.png
 
@@ -132,4 +132,27 @@ JSON
 "$restyle" render gearbox -s "$work/housing.json" -o "$work/glass_1.png" --size 560x420 2>/dev/null
 "$restyle" render caffeine -s "$work/atoms.json" -o "$work/glass_2.png" --size 420x420 2>/dev/null
 convert "$work"/glass_{1,2}.png +append -strip +dither -colors 255 png8:glass.png
+
+# Fig. 1 and 9 of Murray 2016: constant opacity, curvature on what is opaque, and opacity by curvature; Fig. 8: three transfer functions;
+# and the three looks of glass.
+curved() { # NAME PROPERTIES
+  cat > "$work/$1.json" <<JSON
+{ "camera": { "bgcolor": "#f4f6f8", "zoom": 1.25, "target": [0.05, -0.1, 0] }, "mapping": { "*": "g" },
+  "shaders": [ { "name": "g", "shader": "curvature", "properties": { "base_color": "material", "smoothness": 0.8, $2 } } ],
+  "lights": [ { "type": "directional", "position": [-1, 2, 2] }, { "type": "ambient", "intensity": 0.6 } ] }
+JSON
+  "$restyle" render gearbox -s "$work/$1.json" -o "$work/$1.png" --size 350x250 2>/dev/null
+}
+curved alone '"opacity": 0.6, "opacity_transfer": "constant", "color_transfer": "none", "contour_width": 0'
+curved opaque '"opacity_transfer": "constant"'
+curved fig7a '"opacity_transfer": "fig7a"'
+curved fig7b '"opacity_transfer": "fig7b"'
+curved fig8d '"opacity_transfer": "fig8d"'
+curved fig6b '"opacity_transfer": "fig7b", "color_transfer": "fig6b"'
+for pair in glass:gearbox xray:gearbox ghost:caffeine; do
+  look=${pair%%:*} scene=${pair##*:}
+  "$restyle" render "$scene" -s "$look" -o "$work/look_$look.png" --size 350x280 2>/dev/null
+done
+convert \( "$work"/{alone,opaque,fig7a}.png +append \) \( "$work"/{fig7b,fig8d,fig6b}.png +append \) \
+  \( "$work"/look_{glass,xray,ghost}.png +append \) -append -strip +dither -colors 200 png8:curvature.png
 ls -l -- *.png
