@@ -119,8 +119,8 @@ pub struct Shade {
     lights: KeptBuffer,
     output: KeptBuffer,
     shadows: KeptBuffer,
-    /// For nearest surfaces, and for layers: not one for each pipeline, which would keep targets of former sizes alive.
-    groups: [KeptBindGroup; 2],
+    /// For nearest surfaces, for layers, and for buckets: not one for each pipeline, which would keep targets of former sizes alive.
+    groups: [KeptBindGroup; 3],
     /// What blending layers binds.
     layers_layout: Option<wgpu::BindGroupLayout>,
 }
@@ -150,13 +150,7 @@ impl Shade {
     /// # Errors
     /// [`GpuError::Driver`] where a shader does not compile.
     pub fn prepare(&mut self, gpu: &Gpu, visibility: &Visibility, key: &ShadeKey) -> Result<(), GpuError> {
-        for shader in key.shaders.iter().map(|needs| needs.shader) {
-            if let Entry::Vacant(entry) = self.resources.entry(shader) {
-                let uploaded: Result<Vec<_>, _> =
-                    SHADERS[shader].resources().iter().map(|resource| shading::upload(gpu, resource)).collect();
-                entry.insert(uploaded?);
-            }
-        }
+        self.upload(gpu, key)?;
         if key.layers.is_some() {
             self.layers_layout.get_or_insert_with(|| layers::blend_layout(gpu));
         }
@@ -173,6 +167,21 @@ impl Shade {
             self.pipelines.remove(&oldest);
         }
         self.pipelines.insert(key.clone(), built);
+        Ok(())
+    }
+
+    /// Uploads what the shaders of a key bind beside their materials, unless it is there.
+    ///
+    /// # Errors
+    /// [`GpuError`] where it does not fit the device.
+    pub fn upload(&mut self, gpu: &Gpu, key: &ShadeKey) -> Result<(), GpuError> {
+        for shader in key.shaders.iter().map(|needs| needs.shader) {
+            if let Entry::Vacant(entry) = self.resources.entry(shader) {
+                let uploaded: Result<Vec<_>, _> =
+                    SHADERS[shader].resources().iter().map(|resource| shading::upload(gpu, resource)).collect();
+                entry.insert(uploaded?);
+            }
+        }
         Ok(())
     }
 
@@ -241,10 +250,11 @@ impl Shade {
         Ok(ShadePipeline { layout, pipeline, last_use: self.uses })
     }
 
-    fn layout(&self, gpu: &Gpu, key: &ShadeKey) -> wgpu::BindGroupLayout {
+    /// What the shading of a key binds beside the scene.
+    pub fn layout(&self, gpu: &Gpu, key: &ShadeKey) -> wgpu::BindGroupLayout {
         let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
             binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
+            visibility: wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
             ty,
             count: None,
         };
@@ -293,9 +303,23 @@ impl Shade {
         key: &ShadeKey,
         inputs: &ShadeInputs<'_>,
     ) -> Result<Option<(wgpu::BindGroup, wgpu::Buffer)>, GpuError> {
+        let Some(layout) = self.pipelines.get(key).map(|pipeline| pipeline.layout.clone()) else { return Ok(None) };
+        self.bind_to(gpu, key, (&layout, usize::from(key.layers.is_some())), inputs)
+    }
+
+    /// The same for pipelines of others with this layout; the number says whose group is kept.
+    ///
+    /// # Errors
+    /// As [`Shade::bind`].
+    pub fn bind_to(
+        &mut self,
+        gpu: &Gpu,
+        key: &ShadeKey,
+        (layout, kept): (&wgpu::BindGroupLayout, usize),
+        inputs: &ShadeInputs<'_>,
+    ) -> Result<Option<(wgpu::BindGroup, wgpu::Buffer)>, GpuError> {
         let output = self.output.set(gpu, bytemuck::bytes_of(inputs.output), 0)?;
         let lights = self.lights.set(gpu, bytemuck::bytes_of(inputs.lights), 0)?;
-        let Some(pipeline) = self.pipelines.get(key) else { return Ok(None) };
         let mut bound = vec![
             (0, Bound::Buffer(lights)),
             (1, Bound::Buffer(output.clone())),
@@ -319,8 +343,7 @@ impl Shade {
                 binding += 1;
             }
         }
-        let kept = &mut self.groups[usize::from(key.layers.is_some())];
-        Ok(Some((kept.get(gpu, "shade", &pipeline.layout, bound), output)))
+        Ok(Some((self.groups[kept].get(gpu, "shade", layout, bound), output)))
     }
 
     /// Shades the pixels of view `view_index` that see something. The first view clears the target to `clear`; where post
@@ -420,17 +443,37 @@ impl Shade {
 
 /// The WGSL of the shading pass for a key.
 pub fn shade_module(key: &ShadeKey) -> Module {
-    let mut module = Module::new(&[
+    let mut module = Module::default();
+    add_shading(&mut module, key);
+    if let Some((finish, _)) = key.layers {
+        module.add(wgsl!("lib/geometry.wgsl"));
+        module.add_generated("layers options", format!("const FINISH: u32 = {}u;", finish.number()));
+        module.add(wgsl!("lib/finish.wgsl"));
+        module.add(wgsl!("lib/layers.wgsl"));
+        module.add(wgsl!("layers/blend.wgsl"));
+    } else if key.geometry {
+        module.add(wgsl!("lib/geometry.wgsl"));
+        module.add(wgsl!("objects/shade_geometry.wgsl"));
+    }
+    module
+}
+
+/// Adds the WGSL that finds surfaces and shades them: `surface_at`, `shade_object` and `material_of`.
+pub fn add_shading(module: &mut Module, key: &ShadeKey) {
+    for file in [
         wgsl!("lib/view.wgsl"),
         wgsl!("lib/ids.wgsl"),
         wgsl!("lib/texels.wgsl"),
         wgsl!("lib/objects.wgsl"),
+        wgsl!("lib/scene.wgsl"),
         wgsl!("lib/intersect.wgsl"),
         if key.meshes { wgsl!("lib/mesh.wgsl") } else { wgsl!("lib/mesh_none.wgsl") },
         wgsl!("lib/surface.wgsl"),
         wgsl!("lib/lights.wgsl"),
         wgsl!("lib/encode.wgsl"),
-    ]);
+    ] {
+        module.add(file);
+    }
     let shadow_files: &[Wgsl] = match (key.shadows, key.shadow_filter) {
         (false, _) => &[wgsl!("lib/shadow_none.wgsl")],
         (true, ShadowFilter::Objects) => &[wgsl!("lib/shadow_maps.wgsl"), wgsl!("lib/shadow.wgsl")],
@@ -498,17 +541,6 @@ pub fn shade_module(key: &ShadeKey) -> Module {
     bindings.push_str(&material_function(key));
     module.add_generated("shade bindings", bindings);
     module.add(wgsl!("objects/shade.wgsl"));
-    if let Some((finish, _)) = key.layers {
-        module.add(wgsl!("lib/geometry.wgsl"));
-        module.add_generated("layers options", format!("const FINISH: u32 = {}u;", finish.number()));
-        module.add(wgsl!("lib/finish.wgsl"));
-        module.add(wgsl!("lib/layers.wgsl"));
-        module.add(wgsl!("layers/blend.wgsl"));
-    } else if key.geometry {
-        module.add(wgsl!("lib/geometry.wgsl"));
-        module.add(wgsl!("objects/shade_geometry.wgsl"));
-    }
-    module
 }
 
 /// `material_of`: the material of an id, from memory only where it is not the same for all objects of a kind.
