@@ -85,8 +85,12 @@ pub fn steps(gpu: &Gpu, plan: &Plan, input: &FrameInput<'_>, counts: [u64; 3]) -
     let is_last = plan.direct && chain.pictures == 0;
     steps.push(Step::drawn("shade", size, of_effects + if is_last { output } else { 0 }, reason));
 
-    let layers = layer_steps(plan, size);
+    let mut layers = layer_steps(gpu, plan, size, input.layer_bytes);
     let layers_after = plan.layers.as_ref().map_or(plan.effects.len(), |layers| layers.after_effects);
+    let is_end = plan.direct && plan.layers.is_some() && layers_after == plan.effects.len();
+    if let Some(last) = layers.last_mut().filter(|_| is_end) {
+        last.bytes += output;
+    }
     for (index, key) in plan.effects.iter().enumerate() {
         if index == layers_after {
             steps.extend(layers.clone());
@@ -125,12 +129,12 @@ pub fn steps(gpu: &Gpu, plan: &Plan, input: &FrameInput<'_>, counts: [u64; 3]) -
 }
 
 /// The passes of what is transparent. How many fragments there are is known when they are counted.
-fn layer_steps(plan: &Plan, size: [u32; 2]) -> Vec<Step> {
+fn layer_steps(gpu: &Gpu, plan: &Plan, size: [u32; 2], memory_bytes: u64) -> Vec<Step> {
     let (Some(_), layers) = (&plan.layers, plan.lists()) else {
         return vec![Step::left_out("layers", "nothing is transparent")];
     };
     let mut steps = layers.map_or_else(Vec::new, |layers| list_steps(layers, size));
-    steps.extend(plan.bkb.iter().flat_map(|bkb| bkb_steps(bkb, size)));
+    steps.extend(plan.bkb.iter().flat_map(|bkb| bkb_steps(bkb, size, bkb.bands(gpu, size, memory_bytes))));
     steps
 }
 
@@ -155,12 +159,13 @@ fn list_steps(layers: &LayersPlan, size: [u32; 2]) -> Vec<Step> {
     steps
 }
 
-/// The passes of the bucketed k-buffer.
-fn bkb_steps(bkb: &BkbPlan, size: [u32; 2]) -> Vec<Step> {
+/// The passes of the bucketed k-buffer, in so many bands, of which one takes so many bytes.
+fn bkb_steps(bkb: &BkbPlan, size: [u32; 2], (num_bands, bytes): (usize, u64)) -> Vec<Step> {
     let k = plural(u64::from(bkb.k), "fragment");
-    let cleared = format!("the style asks for bkb: room for the nearest {k} of each pixel");
+    let in_bands = if num_bands > 1 { format!(", in {num_bands} bands of rows") } else { String::new() };
+    let cleared = format!("the style asks for bkb: room for the nearest {k} of each pixel{in_bands}");
     let mut steps = vec![
-        Step::drawn("bkb_cleared", size, bkb.bytes(size), cleared),
+        Step::drawn("bkb_cleared", size, bytes, cleared),
         Step::drawn("bkb_inserted", size, 0, "depth and shape of each fragment, sorted as they come"),
     ];
     let is_bucketed = !bkb.key.form.is_dual_pass();

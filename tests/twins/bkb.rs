@@ -262,6 +262,7 @@ fn style(transparency: &str, opacity: f64, more: &str) -> config::Style {
             "mapping": {{ "*": "glass"{more} }},
             "shaders": [
               {{ "name": "glass", "shader": "unlit", "properties": {{ "base_color": "#2060d0", "opacity": {opacity} }} }},
+              {{ "name": "red", "shader": "unlit", "properties": {{ "base_color": "#d04020", "opacity": {opacity} }} }},
               {{ "name": "solid", "shader": "unlit", "properties": {{ "base_color": "#208040" }} }}],
             "transparency": {{ {transparency} }} }}"##
     ))
@@ -423,6 +424,29 @@ fn words_of_atoms_and_bonds_are_those_of_the_twin() {
 }
 
 #[test]
+fn normals_of_the_nearest_are_those_that_aovs_have() {
+    let Some(mut engine) = engine(shipped("caffeine"), glass("", 12, 512)) else { return };
+    let size = [96, 80];
+    let aovs = gpu::aovs(&mut engine, size);
+    let words = words(&mut engine, size);
+    let (mut compared, mut steps) = (0, 0);
+    for (pixel, fragments) in words.fragments.iter().enumerate().filter(|(_, fragments)| !fragments.is_empty()) {
+        let nearest = stored_depth(&words.band, f32::from_bits(fragments[0][0]));
+        let slots = pixel * 12..(pixel + 1) * 12;
+        let mut at = slots.filter(|slot| words.z[*slot] != EMPTY && words.z[*slot] & 0xffff == nearest);
+        let (Some(slot), None) = (at.next(), at.next()) else { continue };
+        let normal = DVec3::from_slice(&[0, 1, 2].map(|axis| f64::from(aovs.normal[3 * pixel + axis])));
+        let (word, twin) = (words.d[2 * slot + 1], pack_normal(normal));
+        let apart = |shift: u32| (word >> shift & 0x7fff).abs_diff(twin >> shift & 0x7fff);
+        assert!(word >> 30 == twin >> 30 && apart(0).max(apart(15)) <= 1, "{word:x} and {twin:x}");
+        steps += usize::from(word != twin);
+        compared += 1;
+    }
+    // Rounding to 24 bits before rounding to 15.
+    assert!(compared > 1000 && steps * 100 < compared, "{steps} of {compared}");
+}
+
+#[test]
 fn kappas_of_parts_are_those_of_the_twin_in_every_form() {
     for camera in ["", r#", "orthographic": true"#] {
         for form in [BkbForm::Published, BkbForm::OneWay, BkbForm::BruteForce] {
@@ -544,6 +568,20 @@ fn fragments_of_one_key_are_one() {
     }
 }
 
+#[test]
+fn few_fragments_of_an_assembly_share_a_key() {
+    let Some(mut engine) = engine(shipped("gearbox"), glass("", 64, 512)) else { return };
+    let words = words(&mut engine, [160, 120]);
+    let (mut all, mut lost) = (0, 0);
+    for (z, fragments) in words.z.chunks_exact(64).zip(&words.fragments) {
+        assert!(fragments.len() <= 64);
+        all += fragments.len();
+        lost += fragments.len() - z.iter().take_while(|key| **key != EMPTY).count();
+    }
+    eprintln!("{lost} of {all} fragments share a key with another");
+    assert!(all > 40_000 && lost * 1000 < all, "{lost} of {all}");
+}
+
 /// The picture of the middle, in linear light.
 fn middle(engine: &mut Engine, size: [u32; 2], samples: u32) -> [f64; 3] {
     let image = gpu::still(engine, size, samples);
@@ -554,20 +592,29 @@ fn middle(engine: &mut Engine, size: [u32; 2], samples: u32) -> [f64; 3] {
 #[test]
 fn pictures_are_those_of_the_blended_twin() {
     let size = [24, 16];
-    let background = gpu::color("#f0e0a0").to_array().map(f64::from);
-    let blue = gpu::color("#2060d0").to_array().map(f64::from);
+    let [behind, blue, red] =
+        ["#f0e0a0", "#2060d0", "#d04020"].map(|color| gpu::color(color).to_array().map(f64::from));
     for (count, k) in [(1, 8), (8, 8), (32, 32), (32, 5), (64, 64)] {
+        let objects = 4.min(count);
+        let mut sorted: Vec<(usize, usize)> =
+            (0..count).map(|index| ((index * 89 + 31) % count, index % objects)).collect();
+        sorted.sort_unstable();
+        // The nearest k from far to near; the second object is red. Opacity has steps of 1/255.
+        let twin = sorted.iter().take(k).rev().fold(behind, |under, (_, object)| {
+            let color = if *object == 1 { red } else { blue };
+            [0, 1, 2].map(|channel| under[channel] + 51.0 / 255.0 * (color[channel] - under[channel]))
+        });
         for samples in [1, 4] {
             for form in [BkbForm::Published, BkbForm::OneWay, BkbForm::BruteForce, BkbForm::DualPass] {
-                let Some(mut engine) = engine(squares(count, 4.min(count)), style(&bkb(k), 0.2, "")) else { return };
+                let style = style(&bkb(k), 0.2, r#", "mesh[part=part1]": "red""#);
+                let Some(mut engine) = engine(squares(count, objects), style) else { return };
                 engine.set_bkb_form(form);
-                let open = (1.0 - 51.0 / 255.0f64).powi(count.min(k) as i32);
                 let picture = middle(&mut engine, size, samples);
-                for channel in 0..3 {
-                    let twin = blue[channel] + open * (background[channel] - blue[channel]);
-                    let error = (picture[channel] - twin).abs();
-                    assert!(error < 1e-3, "{count} squares, k = {k}, {samples} samples, {form:?}: {error}");
-                }
+                let error = [0, 1, 2].map(|channel| (picture[channel] - twin[channel]).abs());
+                assert!(
+                    error.iter().all(|error| *error < 1e-3),
+                    "{count} squares, k = {k}, {samples} samples, {form:?}: {error:?}"
+                );
             }
         }
     }
@@ -589,6 +636,14 @@ fn what_is_opaque_hides_what_is_behind_it_alone() {
     };
     assert!(largest_step(&packed, &bucketed) < 300, "{}", largest_step(&packed, &bucketed));
     assert!(lists.layer_count == buckets.layer_count && lists.ids == buckets.ids && lists.depth == buckets.depth);
+    // No slot goes to what is hidden.
+    let style = style(&bkb(16), 0.4, r#", "mesh[part=part1]": "solid""#);
+    let Some(mut engine) = engine(squares(16, 4), style) else { return };
+    let words = words(&mut engine, size);
+    for (z, fragments) in words.z.chunks_exact(16).zip(&words.fragments) {
+        let kept = z.iter().filter(|key| **key != EMPTY).count();
+        assert!(kept == fragments.len() && kept < 12, "{kept}");
+    }
 }
 
 /// The largest difference of two pictures of 16 bits.

@@ -131,9 +131,23 @@ pub struct BkbPlan {
 }
 
 impl BkbPlan {
-    /// Bytes of all buffers for a picture in one band.
-    pub fn bytes(&self, size: [u32; 2]) -> u64 {
-        u64::from(size[0]) * u64::from(size[1]) * u64::from(self.k) * self.key.form.slot_bytes()
+    /// Slots of a row of a picture.
+    fn row_slots(&self, width: u32) -> u64 {
+        u64::from(width) * u64::from(self.k)
+    }
+
+    /// Most rows that are stored at once, with at most `memory_bytes` for all buffers.
+    fn most_rows(&self, gpu: &Gpu, width: u32, memory_bytes: u64) -> u32 {
+        let (row_slots, form) = (self.row_slots(width), self.key.form);
+        let in_memory = memory_bytes / (row_slots * form.slot_bytes());
+        let bound = most_bytes(gpu, u64::MAX) / (row_slots * 4 * form.data_words());
+        in_memory.min(bound).min(u64::from(u32::MAX)) as u32
+    }
+
+    /// Bands of a picture, and bytes of all buffers for the largest of them.
+    pub fn bands(&self, gpu: &Gpu, size: [u32; 2], memory_bytes: u64) -> (usize, u64) {
+        let rows = band_rows(size[1], self.most_rows(gpu, size[0], memory_bytes));
+        (rows.len(), most_stored(&rows) * self.row_slots(size[0]) * self.key.form.slot_bytes())
     }
 }
 
@@ -184,12 +198,20 @@ pub struct Bkb {
     slots: Vec<BandSlot>,
 }
 
-/// Rows of the bands of a picture: those that are drawn, and those that are stored.
-fn band_rows(height: u32, most_stored: u32) -> Vec<[std::ops::Range<u32>; 2]> {
-    if most_stored >= height {
+/// Rows of a band: those that are drawn, and those that are stored.
+type BandRows = [std::ops::Range<u32>; 2];
+
+/// Rows that the largest of some bands stores.
+fn most_stored(bands: &[BandRows]) -> u64 {
+    bands.iter().map(|[_, stored]| u64::from(stored.end - stored.start)).max().unwrap_or(0)
+}
+
+/// The bands of a picture, which store at most so many rows.
+fn band_rows(height: u32, most_rows: u32) -> Vec<BandRows> {
+    if most_rows >= height {
         return vec![[0..height, 0..height]];
     }
-    let most_drawn = most_stored.saturating_sub(2).max(1);
+    let most_drawn = most_rows.saturating_sub(2).max(1);
     let rows = |index: u32| index * most_drawn..((index + 1) * most_drawn).min(height);
     let stored = |rows: &std::ops::Range<u32>| rows.start.saturating_sub(1)..(rows.end + 1).min(height);
     (0..height.div_ceil(most_drawn)).map(rows).map(|rows| [rows.clone(), stored(&rows)]).collect()
@@ -252,26 +274,23 @@ impl Bkb {
         plan: &BkbPlan,
         objects: &ObjectBuffers,
     ) -> Result<(), GpuError> {
-        let form = plan.key.form;
-        let row_slots = u64::from(size[0]) * u64::from(plan.k);
-        let in_memory = memory_bytes / (row_slots * form.slot_bytes());
-        let bound = most_bytes(gpu, u64::MAX) / (row_slots * 4 * form.data_words());
-        let most_rows = in_memory.min(bound).min(u64::from(u32::MAX)) as u32;
+        let row_slots = plan.row_slots(size[0]);
+        let most_rows = plan.most_rows(gpu, size[0], memory_bytes);
         if most_rows < size[1].min(3) {
             return Err(GpuError::TooMany {
                 what: "layers of three rows",
                 count: (3 * row_slots) as usize,
-                bytes: 3 * row_slots * form.slot_bytes(),
+                bytes: 3 * row_slots * plan.key.form.slot_bytes(),
                 limit: memory_bytes,
             });
         }
         let rows = band_rows(size[1], most_rows);
-        let slots = rows.iter().map(|[_, stored]| u64::from(stored.end - stored.start)).max().unwrap_or(0) * row_slots;
+        let slots = most_stored(&rows) * row_slots;
         if self.buffers.as_ref().is_none_or(|buffers| !buffers.fits(slots, &plan.key)) {
             self.buffers = None;
             self.buffers = Some(Buffers::new(gpu, slots, &plan.key));
         }
-        let band = |[drawn, stored]: [std::ops::Range<u32>; 2]| BkbBand {
+        let band = |[drawn, stored]: BandRows| BkbBand {
             width: size[0],
             height: size[1],
             first_row: stored.start,

@@ -305,7 +305,7 @@ impl Experiment for Fig10 {
                         series: kind.name.to_owned(),
                         point: "frame".to_owned(),
                         extent: objects as f64,
-                        is_published: kind.form.is_some(),
+                        is_published: kind.form == Some(BkbForm::Published),
                         size,
                     },
                     subject: Box::new(TimedFrame { frame, last: Vec::new() }),
