@@ -1,12 +1,6 @@
 // Visibility of atoms: a quad around each, an exact ray cast in each of its pixels.
 // Writes the id of the nearest surface and its depth; with HULL also the hull outline of the atom.
 
-@group(0) @binding(0) var<uniform> view: View;
-@group(0) @binding(1) var atoms: texture_2d<u32>;
-@group(0) @binding(2) var connectors: texture_2d<u32>;
-@group(0) @binding(3) var<uniform> materials: array<Material, 512>;
-@group(0) @binding(4) var<storage, read> atom_order: array<u32>;
-
 struct AtomVarying {
     @builtin(position) position: vec4<f32>,
     // View-space centre and radius.

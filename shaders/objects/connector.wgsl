@@ -2,12 +2,6 @@
 // Writes the id of the nearest surface and its depth; with HULL also the hull outline, a truncated
 // cone whose radii are enlarged at each end by that end's own pixel size.
 
-@group(0) @binding(0) var<uniform> view: View;
-@group(0) @binding(1) var atoms: texture_2d<u32>;
-@group(0) @binding(2) var connectors: texture_2d<u32>;
-@group(0) @binding(3) var<uniform> materials: array<Material, 512>;
-@group(0) @binding(5) var<storage, read> connector_order: array<u32>;
-
 struct ConnectorVarying {
     @builtin(position) position: vec4<f32>,
     // View-space end and the hull's radius there; 0 without one.

@@ -56,18 +56,23 @@ fn pixel_world_at(s: Surface) -> f32 {
     return view.pixel_view * mix(-s.position_view.z, 1.0, view.orthographic);
 }
 
+// Depth in the transfer functions of a depth along the view.
+fn curvature_depth(m: CurvatureMaterial, t: f32) -> f32 {
+    let middle = -to_view(view, m.center_world).z;
+    let depth = 0.5 * ((t - middle) / m.radius + 1.0);
+    return clamp((depth - m.depth_start) * m.depth_scale, 0.0, 1.0);
+}
+
 fn curvature_bend(s: Surface, m: CurvatureMaterial) -> Bend {
     var kappa = s.kappa;
     if CURVATURE_EMPHASIS && m.emphasis > 0.0 { kappa = mix(kappa, curvature_of_picture(s), m.emphasis); }
     let signed = tanh(clamp(m.gain * kappa, -20.0, 20.0));
     let width_px = m.contour_px + m.contour_world / pixel_world_at(s);
     let rim = select(0.0, clamp(width_px / view.footprint_px - s.rim_steps + 0.5, 0.0, 1.0), width_px > 0.0);
-    let middle = -to_view(view, m.center_world).z;
-    let depth = 0.5 * ((-s.position_view.z - middle) / m.radius + 1.0);
     return Bend(
         mix(signed, -m.contour, rim),
         mix(abs(signed), m.contour, rim),
-        clamp((depth - m.depth_start) * m.depth_scale, 0.0, 1.0),
+        curvature_depth(m, -s.position_view.z),
     );
 }
 

@@ -3,16 +3,6 @@
 // vertices of one place, so that it has no gaps at hard edges.
 // NUMBERED says whether the device numbers the triangles of a draw; where it does not, vertices are fetched one by one.
 
-@group(0) @binding(0) var<uniform> view: View;
-@group(0) @binding(1) var atoms: texture_2d<u32>;
-@group(0) @binding(2) var connectors: texture_2d<u32>;
-@group(0) @binding(3) var<uniform> materials: array<Material, 512>;
-@group(0) @binding(6) var mesh_vertices: texture_2d<u32>;
-@group(0) @binding(7) var mesh_triangles: texture_2d<u32>;
-@group(0) @binding(8) var mesh_parts: texture_2d<u32>;
-@group(0) @binding(9) var mesh_runs: texture_2d<u32>;
-@group(0) @binding(10) var mesh_pages: texture_2d<u32>;
-
 // An outline is never wider than this share of its part's radius: what is small in the picture would turn into a blot.
 const SHELL_SHARE: f32 = 0.25;
 

@@ -8,15 +8,6 @@ struct Output {
     background: vec4<f32>,
 }
 
-@group(0) @binding(0) var<uniform> view: View;
-@group(0) @binding(1) var atoms: texture_2d<u32>;
-@group(0) @binding(2) var connectors: texture_2d<u32>;
-@group(0) @binding(6) var mesh_vertices: texture_2d<u32>;
-@group(0) @binding(7) var mesh_triangles: texture_2d<u32>;
-@group(0) @binding(8) var mesh_parts: texture_2d<u32>;
-@group(0) @binding(9) var mesh_runs: texture_2d<u32>;
-@group(0) @binding(10) var mesh_pages: texture_2d<u32>;
-@group(0) @binding(3) var<uniform> materials: array<Material, 512>;
 @group(1) @binding(0) var<uniform> lights: Lights;
 @group(1) @binding(1) var<uniform> output: Output;
 @group(1) @binding(2) var visibility: texture_2d<u32>;

@@ -6,13 +6,13 @@ use super::values::Values;
 /// The keys of `transparency`.
 pub const PARAMS: &[Param] = &[
     Param::choice("method", &["auto", "packed", "bkb"], "auto")
-        .not_drawn_yet()
-        .doc("auto takes the cheapest that is right for the scene."),
+        .doc("auto takes the cheapest that is right for the scene, which is packed: all surfaces, sorted exactly. bkb is the bucketed k-buffer of Murray 2016: the k nearest of each pixel.")
+        .examples(&[r#""packed""#, r#""bkb""#]),
     Param::count("k", 8)
         .range(1.0, 64.0)
         .unit("fragments")
-        .not_drawn_yet()
-        .doc("Most fragments that are kept for each pixel."),
+        .doc("Most fragments that bkb keeps for each pixel, the nearest; packed keeps all.")
+        .examples(&["1", "2", "8"]),
     Param::count("memory_mb", 512)
         .range(16.0, 65536.0)
         .unit("MB")

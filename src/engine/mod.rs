@@ -18,10 +18,10 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-use crate::config::{CatalogEntry, LightKind, ObjectKind, Role, Shadow, Style, Values};
+use crate::config::{CatalogEntry, LightKind, ObjectKind, Role, Shadow, Style, TransparencyMethod, Values};
 use crate::effects::{self, Depths, EFFECTS, EffectContext, effect_index};
 use crate::frame::objects::{DrawList, MOST_PICKS};
-use crate::frame::{self, Aovs, Effect, FrameInput, Materials, Renderer, TargetBytes};
+use crate::frame::{self, Aovs, Effect, FrameInput, LayerMethod, Materials, Renderer, TargetBytes};
 use crate::gpu::PassTimes;
 use crate::providers::{CameraProvider, Lengths, LightingProvider, ShaderProvider, picked};
 use crate::scene::{AovImage, Camera, Image, Pixels, Scene, Sphere};
@@ -30,10 +30,14 @@ use build::ObjectKey;
 use live::Live;
 use picks::Picks;
 
+pub use crate::frame::bkb::{BkbForm, BkbWords};
 pub use crate::frame::{MAX_SAMPLES, ShadowFilter, ShadowQuality, Step};
 pub use crate::gpu::{Counters, Gpu, GpuError};
 pub use live::{Part, Refusal, Reload, ReloadTimes, Sources, source_tree_shaders};
 pub use tiles::TileError;
+
+/// What curvature, with the scene's radius as the unit of length, is multiplied by before tanh.
+const CURVATURE_GAIN: f32 = 1.0;
 
 /// Why a frame lacks an effect that its style does not ask for.
 const NOT_LISTED: &str = "post_effects does not list it";
@@ -161,6 +165,8 @@ pub struct Engine {
     live: Option<Live>,
     /// Forms of post effects in which the next frames are drawn.
     forms: Vec<EffectForm>,
+    /// The form of the bucketed k-buffer in which they are drawn.
+    bkb_form: BkbForm,
 }
 
 impl Engine {
@@ -185,6 +191,7 @@ impl Engine {
             last_request: None,
             live: None,
             forms: Vec::new(),
+            bkb_form: BkbForm::default(),
         }
     }
 
@@ -219,6 +226,11 @@ impl Engine {
     /// Draws post effects of the next frames in these forms.
     pub fn set_forms(&mut self, forms: Vec<EffectForm>) {
         self.forms = forms;
+    }
+
+    /// Draws the bucketed k-buffer of the next frames in this form, where the style asks for one.
+    pub fn set_bkb_form(&mut self, form: BkbForm) {
+        self.bkb_form = form;
     }
 
     /// Replaces the scene.
@@ -263,7 +275,7 @@ impl Engine {
         let known = self.drawn.as_ref().filter(|_| !scene_is_new);
         let resolved = resolve(&content, known, request.size[1]);
         let resolved_at = Instant::now();
-        frame_input(&content, &resolved.drawn, &request, &self.forms, |input| {
+        frame_input(&content, &resolved.drawn, &request, (&self.forms, self.bkb_form), |input| {
             self.renderer.prepare(resolved.list.as_ref(), &resolved.materials, input)
         })?;
         self.take(resolved)?;
@@ -311,7 +323,11 @@ impl Engine {
 
     /// How far what a pixel sees changes others, in pixels.
     fn reach_px(&mut self, request: &Request) -> Result<u32, GpuError> {
-        self.with_input(request, |_, input| Ok(input.effects.iter().map(|effect| effect.reach_px).sum()))
+        self.with_input(request, |_, input| {
+            // Curvature is found between neighbours.
+            let of_layers = u32::from(input.layer_method != LayerMethod::Packed);
+            Ok(of_layers + input.effects.iter().map(|effect| effect.reach_px).sum::<u32>())
+        })
     }
 
     /// The passes that a frame has and why, and those that are left out and why, without drawing any. Of a picture in tiles it
@@ -380,6 +396,15 @@ impl Engine {
         Ok(AovImage { size: request.size, depth, normal, ids, color, ao, coc, layer_count, curvature })
     }
 
+    /// The bucketed k-buffer of the same view, and the fragments that it was made of, for whoever holds it to its twin; none where
+    /// the style asks for no such method, nothing is transparent, or it is drawn in bands.
+    ///
+    /// # Errors
+    /// As [`Engine::draw`].
+    pub fn bkb_words(&mut self, request: &Request) -> Result<Option<BkbWords>, GpuError> {
+        self.with_input(request, |renderer, input| renderer.render_bkb(input))
+    }
+
     fn with_input<T>(
         &mut self,
         request: &Request,
@@ -388,7 +413,7 @@ impl Engine {
         self.refresh(request.size[1])?;
         self.last_request = Some(*request);
         let (Some(content), Some(drawn)) = (&self.content, &self.drawn) else { return Err(GpuError::NothingToDraw) };
-        frame_input(content, drawn, request, &self.forms, |input| draw(&mut self.renderer, input))
+        frame_input(content, drawn, request, (&self.forms, self.bkb_form), |input| draw(&mut self.renderer, input))
     }
 
     /// Milliseconds of each pass of the last timed frame.
@@ -512,7 +537,7 @@ fn frame_input<T>(
     content: &Content,
     drawn: &Drawn,
     request: &Request,
-    forms: &[EffectForm],
+    (forms, bkb_form): (&[EffectForm], BkbForm),
     draw: impl FnOnce(&FrameInput<'_>) -> T,
 ) -> T {
     let camera = content.camera.turned(request.size, request.turn_deg.to_radians());
@@ -525,6 +550,7 @@ fn frame_input<T>(
             effect.features |= u32::from(is_on) << bit;
         }
     }
+    let transparency = &content.style.transparency;
     draw(&FrameInput {
         camera: &camera,
         lighting: &lighting,
@@ -534,7 +560,12 @@ fn frame_input<T>(
         tile: None,
         shadows_drawn: false,
         samples: request.samples,
-        layer_bytes: u64::from(content.style.transparency.memory_mb) << 20,
+        layer_bytes: u64::from(transparency.memory_mb) << 20,
+        layer_method: match transparency.method {
+            TransparencyMethod::Auto | TransparencyMethod::Packed => LayerMethod::Packed,
+            TransparencyMethod::Bkb => LayerMethod::Bkb { k: transparency.k, form: bkb_form },
+        },
+        curvature_gain: CURVATURE_GAIN,
         wide: request.wide,
         effects: &effects,
     })

@@ -119,6 +119,8 @@ pub struct Needs {
     pub kinds: DrawnKinds,
     /// Whether anything is transparent.
     pub layered: bool,
+    /// Materials of the style.
+    pub num_materials: usize,
     /// What shading reads; lights and output are filled in for each frame.
     pub key: ShadeKey,
 }
@@ -157,7 +159,7 @@ impl Needs {
             geometry: false,
             layers: None,
         };
-        Needs { kinds: objects.kinds, key, layered: materials.has_layers() }
+        Needs { kinds: objects.kinds, key, layered: materials.has_layers(), num_materials: materials.common.len() }
     }
 }
 

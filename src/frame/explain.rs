@@ -1,5 +1,7 @@
 //! The passes of a frame with their reasons, sizes and bytes, told without drawing any.
 
+use super::bkb::BkbPlan;
+use super::layers::LayersPlan;
 use super::shadow::{MAX_SHADOWS, ShadowMaps};
 use super::{FrameInput, OUTPUT_8, OUTPUT_16, Plan, light_format};
 use super::{post::COLOR_FORMAT, post::GEOMETRY_FORMAT, visibility::DEPTH_FORMAT, visibility::ID_FORMAT};
@@ -83,8 +85,12 @@ pub fn steps(gpu: &Gpu, plan: &Plan, input: &FrameInput<'_>, counts: [u64; 3]) -
     let is_last = plan.direct && chain.pictures == 0;
     steps.push(Step::drawn("shade", size, of_effects + if is_last { output } else { 0 }, reason));
 
-    let layers = layer_steps(plan, size);
+    let mut layers = layer_steps(gpu, plan, size, input.layer_bytes);
     let layers_after = plan.layers.as_ref().map_or(plan.effects.len(), |layers| layers.after_effects);
+    let is_end = plan.direct && plan.layers.is_some() && layers_after == plan.effects.len();
+    if let Some(last) = layers.last_mut().filter(|_| is_end) {
+        last.bytes += output;
+    }
     for (index, key) in plan.effects.iter().enumerate() {
         if index == layers_after {
             steps.extend(layers.clone());
@@ -123,8 +129,17 @@ pub fn steps(gpu: &Gpu, plan: &Plan, input: &FrameInput<'_>, counts: [u64; 3]) -
 }
 
 /// The passes of what is transparent. How many fragments there are is known when they are counted.
-fn layer_steps(plan: &Plan, size: [u32; 2]) -> Vec<Step> {
-    let Some(layers) = &plan.layers else { return vec![Step::left_out("layers", "nothing is transparent")] };
+fn layer_steps(gpu: &Gpu, plan: &Plan, size: [u32; 2], memory_bytes: u64) -> Vec<Step> {
+    let (Some(_), layers) = (&plan.layers, plan.lists()) else {
+        return vec![Step::left_out("layers", "nothing is transparent")];
+    };
+    let mut steps = layers.map_or_else(Vec::new, |layers| list_steps(layers, size));
+    steps.extend(plan.bkb.iter().flat_map(|bkb| bkb_steps(bkb, size, bkb.bands(gpu, size, memory_bytes))));
+    steps
+}
+
+/// The passes that keep all fragments in lists.
+fn list_steps(layers: &LayersPlan, size: [u32; 2]) -> Vec<Step> {
     let lists = 2 * 4 * u64::from(size[0]) * u64::from(size[1]);
     let mut steps = vec![
         Step::drawn(
@@ -141,6 +156,28 @@ fn layer_steps(plan: &Plan, size: [u32; 2]) -> Vec<Step> {
         let reason = "a post effect follows, which sees the nearest surface";
         steps.push(Step::drawn("layers_nearest", size, 0, reason));
     }
+    steps
+}
+
+/// The passes of the bucketed k-buffer, in so many bands, of which one takes so many bytes.
+fn bkb_steps(bkb: &BkbPlan, size: [u32; 2], (num_bands, bytes): (usize, u64)) -> Vec<Step> {
+    let k = plural(u64::from(bkb.k), "fragment");
+    let in_bands = if num_bands > 1 { format!(", in {num_bands} bands of rows") } else { String::new() };
+    let cleared = format!("the style asks for bkb: room for the nearest {k} of each pixel{in_bands}");
+    let mut steps = vec![
+        Step::drawn("bkb_cleared", size, bytes, cleared),
+        Step::drawn("bkb_inserted", size, 0, "depth and shape of each fragment, sorted as they come"),
+    ];
+    let is_bucketed = !bkb.key.form.is_dual_pass();
+    if is_bucketed {
+        steps.push(Step::drawn("bkb_bucketed", size, 0, "each list is put in the order of shapes, a bucket for each"));
+    }
+    steps.push(Step::drawn("bkb_stored", size, 0, "colour and normal of each fragment that was kept"));
+    if is_bucketed {
+        let reason = "colour and opacity by the curvature that neighbours tell";
+        steps.push(Step::drawn("bkb_stylised", size, 0, reason));
+    }
+    steps.push(Step::drawn("bkb_blended", size, 0, "each list is sorted by depth and blended from far to near"));
     steps
 }
 

@@ -110,7 +110,8 @@ pub struct Layers {
     all_counts: Option<wgpu::Buffer>,
 }
 
-fn storage(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+/// A buffer that shaders read and write.
+pub(super) fn storage(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
         visibility,
@@ -148,7 +149,7 @@ pub fn blend_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
 }
 
 /// Most bytes of one buffer.
-fn most_bytes(gpu: &Gpu, memory_bytes: u64) -> u64 {
+pub(super) fn most_bytes(gpu: &Gpu, memory_bytes: u64) -> u64 {
     let limits = gpu.device.limits();
     limits.max_storage_buffer_binding_size.min(limits.max_buffer_size).min(memory_bytes)
 }
@@ -175,7 +176,7 @@ impl LayersPlan {
     }
 
     /// Whether ids of nearest surfaces replace those of what is opaque.
-    fn has_nearest(&self) -> bool {
+    pub fn has_nearest(&self) -> bool {
         self.for_aovs || self.leaves_surfaces()
     }
 
@@ -208,7 +209,7 @@ impl Layers {
                     storage(3, stage),
                 ],
             });
-            let pipeline = gpu.compute_pipeline("room of layers", &room_module(), "make_room", &layout)?;
+            let pipeline = gpu.compute_pipeline("room of layers", &room_module(), "make_room", &[Some(&layout)])?;
             self.room = Some((layout, pipeline));
         }
         Ok(())
@@ -425,6 +426,21 @@ impl Layers {
     /// [`GpuError::Driver`] where they cannot be read.
     pub fn read_counts(&mut self, gpu: &Gpu) -> Result<Option<Vec<u32>>, GpuError> {
         self.all_counts.take().map(|counts| read_words(gpu, &counts)).transpose()
+    }
+
+    /// All fragments of each pixel of the last frame, from near to far: the bits of its depth, and its id. None where it was drawn in
+    /// bands, or not at all.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] where they cannot be read.
+    pub fn read_lists(&self, gpu: &Gpu, counts: &[u32]) -> Result<Option<Vec<Vec<[u32; 2]>>>, GpuError> {
+        let (Some(starts), Some(pool), 1) = (&self.starts, &self.pool, self.num_bands) else { return Ok(None) };
+        let (starts, pool) = (read_words(gpu, starts)?, read_words(gpu, pool)?);
+        let list = |(start, count): (&u32, &u32)| {
+            let words = pool.chunks_exact(2).skip(*start as usize).take(*count as usize);
+            words.map(|words| [words[0], words[1]]).collect()
+        };
+        Ok(Some(starts.iter().zip(counts).map(list).collect()))
     }
 
     /// Whether the pool held all fragments of the frame that was submitted last; where not, it has grown. Waits for the frame.

@@ -3,6 +3,7 @@
 //! A pass that nothing needs does not exist in that frame, and its pipeline and targets are never made.
 
 mod aov;
+pub mod bkb;
 mod contents;
 mod explain;
 mod fullscreen;
@@ -24,6 +25,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 pub use aov::aov_module;
+use bkb::{Bkb, BkbForm, BkbKey, BkbPlan, BkbWords};
 pub use contents::Materials;
 use contents::{Contents, Needs};
 pub use explain::Step;
@@ -81,6 +83,20 @@ fn adding_light(gpu: &Gpu) -> wgpu::ColorTargetState {
     }
 }
 
+/// How the fragments of what is transparent are put in order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LayerMethod {
+    /// All of them, in sorted lists.
+    Packed,
+    /// The nearest of each pixel, in buckets.
+    Bkb {
+        /// How many of them.
+        k: u32,
+        /// How they are used.
+        form: BkbForm,
+    },
+}
+
 /// What one still needs beside objects and materials.
 #[derive(Debug, Clone)]
 pub struct FrameInput<'a> {
@@ -106,6 +122,10 @@ pub struct FrameInput<'a> {
     pub effects: &'a [Effect],
     /// Most bytes that the fragments of what is transparent take at once.
     pub layer_bytes: u64,
+    /// How they are put in order.
+    pub layer_method: LayerMethod,
+    /// What curvature, with the radius of `bounds` as the unit of length, is multiplied by before tanh.
+    pub curvature_gain: f32,
 }
 
 impl FrameInput<'_> {
@@ -149,6 +169,8 @@ struct Plan {
     seen: VisibilityKey,
     effects: Vec<EffectKey>,
     layers: Option<LayersPlan>,
+    /// Buckets that what is transparent is blended from, instead of from lists.
+    bkb: Option<BkbPlan>,
 }
 
 impl Plan {
@@ -174,15 +196,40 @@ impl Plan {
         let seen = VisibilityKey { hulls: shade.hulls, orthographic, light: false, drawn };
         let before = input.effects.iter().take_while(|effect| EFFECTS[effect.effect].is_before_layers()).count();
         let effects = post::keys(input.effects, orthographic, direct, needs.layered.then_some(before));
-        let layers = needs.layered.then(|| {
-            let finish = match (before == input.effects.len(), direct) {
-                (false, _) => Finish::Next,
-                (true, false) => Finish::Add,
-                (true, true) => Finish::Encode,
-            };
-            LayersPlan::new(&shade, seen, finish, finish == Finish::Next, before)
-        });
-        Plan { samples, direct, shadows, map_size, shade, seen, effects, layers }
+        let finish = match (before == input.effects.len(), direct) {
+            (false, _) => Finish::Next,
+            (true, false) => Finish::Add,
+            (true, true) => Finish::Encode,
+        };
+        let layers = needs.layered.then(|| LayersPlan::new(&shade, seen, finish, finish == Finish::Next, before));
+        let bkb = match input.layer_method {
+            LayerMethod::Bkb { k, form } if needs.layered => {
+                let shade = ShadeKey { hulls: false, encode: false, geometry: false, ..shade.clone() };
+                Some(BkbPlan {
+                    key: BkbKey { shade, form, finish, keeps_kappa: false },
+                    k,
+                    num_materials: needs.num_materials,
+                    curvature_scale: input.bounds.radius * input.curvature_gain,
+                })
+            }
+            _ => None,
+        };
+        Plan { samples, direct, shadows, map_size, shade, seen, effects, layers, bkb }
+    }
+
+    /// Has counts and ids of nearest surfaces found, and curvatures kept.
+    fn ask_for_aovs(&mut self) {
+        if let Some(layers) = &mut self.layers {
+            layers.for_aovs = true;
+        }
+        if let Some(bkb) = &mut self.bkb {
+            bkb.key.keeps_kappa = !bkb.key.form.is_dual_pass();
+        }
+    }
+
+    /// The lists of what is transparent, where the frame makes them: without buckets, or where nearest surfaces are asked for.
+    fn lists(&self) -> Option<&LayersPlan> {
+        self.layers.as_ref().filter(|layers| self.bkb.is_none() || layers.has_nearest())
     }
 
     /// How a light sees the scene. Outlines cast no shadows, nor does what is transparent.
@@ -222,6 +269,7 @@ pub struct Renderer {
     light_eyes: Vec<Eye>,
     maps: Option<ShadowMaps>,
     layers: Layers,
+    bkb: Bkb,
     shadow_quality: ShadowQuality,
     last_times: PassTimes,
 }
@@ -243,6 +291,7 @@ impl Renderer {
             light_eyes: Vec::new(),
             maps: None,
             layers: Layers::default(),
+            bkb: Bkb::default(),
             shadow_quality: ShadowQuality::default(),
             last_times: Vec::new(),
         }
@@ -289,6 +338,7 @@ impl Renderer {
         self.resolve = resolve;
         self.aov = aov::Aov::default();
         self.layers.forget_pipelines();
+        self.bkb.forget_pipelines();
         Ok(())
     }
 
@@ -312,12 +362,15 @@ impl Renderer {
         for key in &plan.effects {
             self.post.prepare(gpu, &self.visibility, key)?;
         }
-        if let Some(layers) = &plan.layers {
+        if let Some(layers) = plan.lists() {
             for key in [layers.count, layers.write] {
                 self.visibility.prepare(gpu, needs.kinds, key)?;
             }
             self.shade.prepare(gpu, &self.visibility, &layers.shade)?;
             self.layers.prepare(gpu, &self.shade, layers)?;
+        }
+        if let Some(bkb) = &plan.bkb {
+            self.bkb.prepare(gpu, &self.visibility, &mut self.shade, bkb)?;
         }
         if !plan.direct {
             self.resolve.prepare(gpu, wide)?;
@@ -369,21 +422,28 @@ impl Renderer {
         // What this frame needs, and what of it is not there yet.
         let needs = self.contents.needs();
         let mut plan = Plan::new(&gpu, &needs, input, self.shadow_quality);
-        if let Some(layers) = &mut plan.layers {
-            layers.for_aovs = found.is_some();
+        if found.is_some() {
+            plan.ask_for_aovs();
         }
         self.build(&needs, &plan, input.wide)?;
         let output_format = if input.wide { OUTPUT_16 } else { OUTPUT_8 };
         self.targets.fit(&gpu, input.drawn_size(), output_format, !plan.direct, plan.chain());
         let effect_bytes = self.post.fit(&gpu, input.drawn_size(), input.effects);
         self.fit_shadows(&plan);
-        match &plan.layers {
+        let view = input.view();
+        match plan.lists() {
             Some(_) => self.layers.begin(&gpu, input.drawn_size(), input.layer_bytes, plan.samples)?,
             None => self.layers = Layers::default(),
         }
+        match &plan.bkb {
+            Some(bkb) => {
+                let of = (&view, input.drawn_size());
+                self.bkb.begin(&gpu, of, input.layer_bytes, bkb, &self.contents.objects)?;
+            }
+            None => self.bkb.forget_buffers(),
+        }
 
         // Uniforms and bindings: a view for each sample, and the view of each light that casts shadows.
-        let view = input.view();
         let samples = plan.samples;
         let views: Vec<View> =
             (0..).zip(sample_offsets_px(samples)).map(|(index, offset)| view.sample(index, samples, offset)).collect();
@@ -430,8 +490,12 @@ impl Renderer {
             Some(targets) => self.post.bind(&gpu, input.effects, &plan.effects, targets, plan.layers_at())?,
             None => None,
         };
-        let layers_group = match &plan.layers {
+        let layers_group = match plan.lists() {
             Some(layers) => self.shade.bind(&gpu, &layers.shade, &inputs)?,
+            None => None,
+        };
+        let bkb_group = match &plan.bkb {
+            Some(bkb) => self.bkb.bind_shading(&gpu, &mut self.shade, bkb, &inputs)?,
             None => None,
         };
         let mut timer = if timed { PassTimer::new(&gpu) } else { None };
@@ -465,7 +529,7 @@ impl Renderer {
                 let before = (0..num_before, at);
                 self.post.draw(&mut encoder, &plan.effects, &scene, index, groups, targets, before, &mut timer);
             }
-            if let (Some(targets), Some(layers), Some((group, _))) = (&post, &plan.layers, &layers_group) {
+            if let (Some(targets), Some(_)) = (&post, &plan.layers) {
                 let is_last = num_before == plan.effects.len();
                 let (Some(color), Some(next), Some(opaque)) =
                     (turn(targets.colors, num_before), turn(targets.colors, num_before + 1), targets.geometry.first())
@@ -481,8 +545,15 @@ impl Renderer {
                     to_geometry: turn(targets.geometry, 1).filter(|_| !is_last),
                     clears: index == 0 || !is_last,
                 };
-                let (with, on) = ((&self.visibility, &self.shade), (&scene, objects));
-                self.layers.draw(&gpu, &mut encoder, with, layers, on, &pass, group, &to, &mut timer)?;
+                let on = (&scene, objects);
+                if let (Some(layers), Some((group, _))) = (plan.lists(), &layers_group) {
+                    let with = (&self.visibility, &self.shade);
+                    self.layers.draw(&gpu, &mut encoder, with, layers, on, &pass, group, &to, &mut timer)?;
+                }
+                // Over what lists came to: of them only the nearest surfaces stay.
+                if let (Some(bkb), Some(group)) = (&plan.bkb, &bkb_group) {
+                    self.bkb.draw(&gpu, &mut encoder, &self.visibility, bkb, on, &pass, group, &to, &mut timer)?;
+                }
             }
             if let (Some(targets), Some(groups)) = (&post, &effect_groups) {
                 let after = (num_before..plan.effects.len(), at);
@@ -514,7 +585,7 @@ impl Renderer {
         };
         self.targets.note_shadow_bytes(self.maps.as_ref().map_or(0, ShadowMaps::bytes));
         self.targets.note_effect_bytes(effect_bytes);
-        self.targets.note_layer_bytes(self.layers.bytes());
+        self.targets.note_layer_bytes(self.layers.bytes() + self.bkb.bytes());
         Ok(())
     }
 
@@ -602,6 +673,21 @@ impl Renderer {
         })
     }
 
+    /// The k-buffer of the same view and the fragments that it was made of; none where the frame has none, or in bands.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn render_bkb(&mut self, input: &FrameInput<'_>) -> Result<Option<BkbWords>, GpuError> {
+        let single = FrameInput { samples: 1, wide: true, tile: None, shadows_drawn: false, ..input.clone() };
+        self.draw_frame(&single, false, &mut |_| ControlFlow::Continue(()), Some(&mut Vec::new()))?;
+        let gpu = Arc::clone(&self.gpu);
+        let (Some(words), Some(counts)) = (self.bkb.read(&gpu)?, self.layers.read_counts(&gpu)?) else {
+            return Ok(None);
+        };
+        let fragments = self.layers.read_lists(&gpu, &counts)?;
+        Ok(fragments.map(|fragments| BkbWords { fragments, ..words }))
+    }
+
     /// Milliseconds of each pass of the last timed frame; empty where the adapter has no timestamps.
     pub fn pass_times(&self) -> &PassTimes {
         &self.last_times
@@ -675,6 +761,7 @@ pub fn gpu_structs() -> Vec<StructInfo> {
         ShadowView::info(),
         Shadows::info(),
         layers::LayerBand::info(),
+        bkb::BkbBand::info(),
     ];
     for shader in SHADERS {
         all.push(shader.material_info());

@@ -123,8 +123,8 @@ pub struct Shade {
     lights: KeptBuffer,
     output: KeptBuffer,
     shadows: KeptBuffer,
-    /// For nearest surfaces, and for layers: not one for each pipeline, which would keep targets of former sizes alive.
-    groups: [KeptBindGroup; 2],
+    /// For nearest surfaces, for layers, and for buckets: not one for each pipeline, which would keep targets of former sizes alive.
+    groups: [KeptBindGroup; 3],
     /// What blending layers binds.
     layers_layout: Option<wgpu::BindGroupLayout>,
 }
@@ -154,13 +154,7 @@ impl Shade {
     /// # Errors
     /// [`GpuError::Driver`] where a shader does not compile.
     pub fn prepare(&mut self, gpu: &Gpu, visibility: &Visibility, key: &ShadeKey) -> Result<(), GpuError> {
-        for shader in key.shaders.iter().map(|needs| needs.shader) {
-            if let Entry::Vacant(entry) = self.resources.entry(shader) {
-                let uploaded: Result<Vec<_>, _> =
-                    SHADERS[shader].resources().iter().map(|resource| shading::upload(gpu, resource)).collect();
-                entry.insert(uploaded?);
-            }
-        }
+        self.upload(gpu, key)?;
         if key.layers.is_some() {
             self.layers_layout.get_or_insert_with(|| layers::blend_layout(gpu));
         }
@@ -177,6 +171,21 @@ impl Shade {
             self.pipelines.remove(&oldest);
         }
         self.pipelines.insert(key.clone(), built);
+        Ok(())
+    }
+
+    /// Uploads what the shaders of a key bind beside their materials, unless it is there.
+    ///
+    /// # Errors
+    /// [`GpuError`] where it does not fit the device.
+    pub fn upload(&mut self, gpu: &Gpu, key: &ShadeKey) -> Result<(), GpuError> {
+        for shader in key.shaders.iter().map(|needs| needs.shader) {
+            if let Entry::Vacant(entry) = self.resources.entry(shader) {
+                let uploaded: Result<Vec<_>, _> =
+                    SHADERS[shader].resources().iter().map(|resource| shading::upload(gpu, resource)).collect();
+                entry.insert(uploaded?);
+            }
+        }
         Ok(())
     }
 
@@ -245,10 +254,11 @@ impl Shade {
         Ok(ShadePipeline { layout, pipeline, last_use: self.uses })
     }
 
-    fn layout(&self, gpu: &Gpu, key: &ShadeKey) -> wgpu::BindGroupLayout {
+    /// What the shading of a key binds beside the scene.
+    pub fn layout(&self, gpu: &Gpu, key: &ShadeKey) -> wgpu::BindGroupLayout {
         let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
             binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
+            visibility: wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
             ty,
             count: None,
         };
@@ -301,9 +311,23 @@ impl Shade {
         key: &ShadeKey,
         inputs: &ShadeInputs<'_>,
     ) -> Result<Option<(wgpu::BindGroup, wgpu::Buffer)>, GpuError> {
+        let Some(layout) = self.pipelines.get(key).map(|pipeline| pipeline.layout.clone()) else { return Ok(None) };
+        self.bind_to(gpu, key, (&layout, usize::from(key.layers.is_some())), inputs)
+    }
+
+    /// The same for pipelines of others with this layout; the number says whose group is kept.
+    ///
+    /// # Errors
+    /// As [`Shade::bind`].
+    pub fn bind_to(
+        &mut self,
+        gpu: &Gpu,
+        key: &ShadeKey,
+        (layout, kept): (&wgpu::BindGroupLayout, usize),
+        inputs: &ShadeInputs<'_>,
+    ) -> Result<Option<(wgpu::BindGroup, wgpu::Buffer)>, GpuError> {
         let output = self.output.set(gpu, bytemuck::bytes_of(inputs.output), 0)?;
         let lights = self.lights.set(gpu, bytemuck::bytes_of(inputs.lights), 0)?;
-        let Some(pipeline) = self.pipelines.get(key) else { return Ok(None) };
         let mut bound = vec![
             (0, Bound::Buffer(lights)),
             (1, Bound::Buffer(output.clone())),
@@ -332,8 +356,7 @@ impl Shade {
                 binding += 1;
             }
         }
-        let kept = &mut self.groups[usize::from(key.layers.is_some())];
-        Ok(Some((kept.get(gpu, "shade", &pipeline.layout, bound), output)))
+        Ok(Some((self.groups[kept].get(gpu, "shade", layout, bound), output)))
     }
 
     /// Shades the pixels of view `view_index` that see something. The first view clears the target to `clear`; where post
@@ -433,16 +456,36 @@ impl Shade {
 
 /// The WGSL of the shading pass for a key.
 pub fn shade_module(key: &ShadeKey) -> Module {
-    let mut module = Module::new(&[
+    let mut module = Module::default();
+    add_shading(&mut module, key);
+    if let Some((finish, _)) = key.layers {
+        module.add(wgsl!("lib/geometry.wgsl"));
+        module.add_generated("layers options", format!("const FINISH: u32 = {}u;", finish.number()));
+        module.add(wgsl!("lib/finish.wgsl"));
+        module.add(wgsl!("lib/layers.wgsl"));
+        module.add(wgsl!("layers/blend.wgsl"));
+    } else if key.geometry {
+        module.add(wgsl!("lib/geometry.wgsl"));
+        module.add(wgsl!("objects/shade_geometry.wgsl"));
+    }
+    module
+}
+
+/// Adds the WGSL that finds surfaces and shades them: `surface_at`, `shade_object` and `material_of`.
+pub fn add_shading(module: &mut Module, key: &ShadeKey) {
+    for file in [
         wgsl!("lib/view.wgsl"),
         wgsl!("lib/ids.wgsl"),
         wgsl!("lib/texels.wgsl"),
         wgsl!("lib/objects.wgsl"),
+        wgsl!("lib/scene.wgsl"),
         wgsl!("lib/intersect.wgsl"),
         wgsl!("lib/surface.wgsl"),
         wgsl!("lib/lights.wgsl"),
         wgsl!("lib/encode.wgsl"),
-    ]);
+    ] {
+        module.add(file);
+    }
     mesh::point_files(key.meshes).iter().for_each(|file| module.add(*file));
     let shadow_files: &[Wgsl] = match (key.shadows, key.shadow_filter) {
         (false, _) => &[wgsl!("lib/shadow_none.wgsl")],
@@ -532,17 +575,27 @@ pub fn shade_module(key: &ShadeKey) -> Module {
     bindings.push_str(&material_function(key));
     module.add_generated("shade bindings", bindings);
     module.add(wgsl!("objects/shade.wgsl"));
-    if let Some((finish, _)) = key.layers {
-        module.add(wgsl!("lib/geometry.wgsl"));
-        module.add_generated("layers options", format!("const FINISH: u32 = {}u;", finish.number()));
-        module.add(wgsl!("lib/finish.wgsl"));
-        module.add(wgsl!("lib/layers.wgsl"));
-        module.add(wgsl!("layers/blend.wgsl"));
-    } else if key.geometry {
-        module.add(wgsl!("lib/geometry.wgsl"));
-        module.add(wgsl!("objects/shade_geometry.wgsl"));
+}
+
+/// `curvature_scale`, what a material multiplies curvature by, and `stylised`, linear colour and opacity of a fragment of a material, with
+/// `kappa` from -1 for convex to 1 for concave and `t` its depth along the view.
+pub fn stylising_by_kappa(key: &ShadeKey) -> String {
+    let (mut scales, mut stylings) = (String::new(), String::new());
+    for needs in key.shaders.iter().filter(|needs| SHADERS[needs.shader].stylises()) {
+        let (name, number) = (SHADERS[needs.shader].name(), needs.shader + 1);
+        let m = format!("let m = {name}_materials[materials[material].stylist_index];");
+        let _ = writeln!(scales, "    if materials[material].stylist == {number}u {{ {m} return m.gain; }}");
+        let _ = writeln!(
+            stylings,
+            "    if materials[material].stylist == {number}u {{\n        {m}\n        \
+             return {name}_stylised(m, color, Bend(kappa, abs(kappa), {name}_depth(m, t)));\n    }}"
+        );
     }
-    module
+    format!(
+        "fn curvature_scale(material: u32, otherwise: f32) -> f32 {{\n{scales}    return otherwise;\n}}\n\
+         fn stylised(material: u32, color: vec3<f32>, kappa: f32, t: f32) -> vec4<f32> {{\n{stylings}    \
+         return vec4<f32>(color, materials[material].opacity);\n}}\n"
+    )
 }
 
 /// `material_of`: the material of an id, from memory only where it is not the same for all objects of a kind.

@@ -77,13 +77,18 @@ pub struct DrawnKinds {
     pub meshes: bool,
 }
 
+/// What a pipeline draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Kind {
+pub enum Kind {
+    /// Atoms.
     Atom,
+    /// Connectors.
     Connector,
+    /// Triangles.
     Mesh,
     /// Outlines around triangles; of mirrored parts, or of others.
     Shell {
+        /// Of mirrored parts.
         mirrored: bool,
     },
 }
@@ -167,7 +172,8 @@ impl Visibility {
             },
             count: None,
         };
-        let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
+        // What is asked of layers between passes is asked in compute passes.
+        let both = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
         let objects = |binding| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: both,
@@ -304,63 +310,11 @@ impl Visibility {
             Kind::Mesh => mesh_module(key, false, numbered),
             Kind::Shell { .. } => mesh_module(key, true, numbered),
         };
-        let module = module.compile(gpu, "visibility")?;
-        let (vertex, fragment) = match kind {
-            Kind::Atom => ("atom_vertex", ["atom_fragment", "atom_layers"]),
-            Kind::Connector => ("connector_vertex", ["connector_fragment", "connector_layers"]),
-            Kind::Mesh | Kind::Shell { .. } => ("mesh_vertex", ["mesh_fragment", "mesh_layers"]),
-        };
-        let fragment = fragment[usize::from(key.drawn.is_layers())];
-        let impostor = wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() };
-        let primitive = match kind {
-            Kind::Atom | Kind::Connector => impostor,
-            // Meshes may be open: both sides are drawn.
-            Kind::Mesh => wgpu::PrimitiveState::default(),
-            Kind::Shell { mirrored } => wgpu::PrimitiveState {
-                front_face: if mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
-                cull_mode: Some(wgpu::Face::Front),
-                ..Default::default()
-            },
-        };
         let layers = key.drawn.is_layers().then_some(&self.layers_layout);
         let groups: Vec<_> = [&self.layout].into_iter().chain(layers).map(Some).collect();
-        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("visibility"),
-            bind_group_layouts: &groups,
-            immediate_size: 0,
-        });
-        let target = [Some(if key.light { LIGHT_FORMAT } else { ID_FORMAT }.into())];
-        gpu.render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("visibility"),
-            layout: Some(&layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some(vertex),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive,
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: DEPTH_FORMAT,
-                depth_write_enabled: Some(!key.drawn.is_layers()),
-                // Layers test depths themselves: what they write does not wait for the test.
-                depth_compare: Some(match key.drawn.is_layers() {
-                    true => wgpu::CompareFunction::Always,
-                    false => wgpu::CompareFunction::Greater,
-                }),
-                stencil: Default::default(),
-                bias: Default::default(),
-            }),
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some(fragment),
-                compilation_options: Default::default(),
-                targets: if key.drawn.is_layers() { &[] } else { &target },
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
+        let target = if key.light { LIGHT_FORMAT } else { ID_FORMAT };
+        let target = (!key.drawn.is_layers()).then_some(target);
+        object_pipeline(gpu, &module, kind, &groups, target)
     }
 
     /// Draws all objects, as the pass's view of the bindings sees them.
@@ -392,7 +346,7 @@ impl Visibility {
             occlusion_query_set: None,
             multiview_mask: None,
         });
-        self.draw_objects(&mut pass, bindings, objects, to);
+        self.draw_objects(&mut pass, bindings, objects, to, &|kind| self.pipelines.get(&(kind, to.key)));
     }
 
     /// Counts or writes the layers of all objects within some rows of the picture, in front of what is opaque.
@@ -407,6 +361,23 @@ impl Visibility {
         rows: std::ops::Range<u32>,
         timer: &mut Option<PassTimer>,
     ) {
+        let pipeline = |kind| self.pipelines.get(&(kind, to.key));
+        self.draw_fragments(encoder, bindings, objects, to, &[(1, layers)], rows, &pipeline, timer);
+    }
+
+    /// Draws the fragments of all objects within some rows of the picture to no target, by pipelines and with groups of others.
+    #[allow(clippy::too_many_arguments)]
+    pub fn draw_fragments<'a>(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        bindings: &SceneBindings,
+        objects: &ObjectBuffers,
+        to: &VisibilityPass<'_>,
+        groups: &[(u32, &wgpu::BindGroup)],
+        rows: std::ops::Range<u32>,
+        pipeline: &dyn Fn(Kind) -> Option<&'a wgpu::RenderPipeline>,
+        timer: &mut Option<PassTimer>,
+    ) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(to.name),
             color_attachments: &[],
@@ -419,17 +390,20 @@ impl Visibility {
             occlusion_query_set: None,
             multiview_mask: None,
         });
-        pass.set_bind_group(1, layers, &[]);
+        for &(index, group) in groups {
+            pass.set_bind_group(index, group, &[]);
+        }
         pass.set_scissor_rect(0, rows.start, to.seen.tile_size_px[0] as u32, rows.end - rows.start);
-        self.draw_objects(&mut pass, bindings, objects, to);
+        self.draw_objects(&mut pass, bindings, objects, to, pipeline);
     }
 
-    fn draw_objects(
+    fn draw_objects<'a>(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         bindings: &SceneBindings,
         objects: &ObjectBuffers,
         to: &VisibilityPass<'_>,
+        pipeline: &dyn Fn(Kind) -> Option<&'a wgpu::RenderPipeline>,
     ) {
         pass.set_bind_group(0, &bindings.group, &[SceneBindings::offset(to.view)]);
         // The viewport is that of the whole picture, so that triangles fall on the same pixels in every tile.
@@ -439,7 +413,7 @@ impl Visibility {
         }
         for (kind, count) in [Kind::Atom, Kind::Connector].into_iter().zip(bindings.num_drawn) {
             if count > 0
-                && let Some(pipeline) = self.pipelines.get(&(kind, to.key))
+                && let Some(pipeline) = pipeline(kind)
             {
                 pass.set_pipeline(pipeline);
                 pass.draw(0..4, 0..count);
@@ -448,7 +422,7 @@ impl Visibility {
         let Some((draws, indices)) = objects.meshes.draws() else { return };
         pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
         let mut draw_all = |kind: Kind, is_drawn: &dyn Fn(&MeshDraw) -> bool| {
-            let Some(pipeline) = self.pipelines.get(&(kind, to.key)) else { return };
+            let Some(pipeline) = pipeline(kind) else { return };
             pass.set_pipeline(pipeline);
             for draw in draws.iter().filter(|draw| is_drawn(draw)) {
                 if self.numbered {
@@ -468,72 +442,176 @@ impl Visibility {
     }
 }
 
+/// A pipeline that draws objects of one kind: nearest surfaces to a target, or without one all fragments of what is transparent.
+///
+/// # Errors
+/// [`GpuError::Driver`] where the shader does not compile.
+pub fn object_pipeline(
+    gpu: &Gpu,
+    module: &Module,
+    kind: Kind,
+    groups: &[Option<&wgpu::BindGroupLayout>],
+    target: Option<wgpu::TextureFormat>,
+) -> Result<wgpu::RenderPipeline, GpuError> {
+    let module = module.compile(gpu, "visibility")?;
+    let (vertex, fragment) = match kind {
+        Kind::Atom => ("atom_vertex", ["atom_fragment", "atom_layers"]),
+        Kind::Connector => ("connector_vertex", ["connector_fragment", "connector_layers"]),
+        Kind::Mesh | Kind::Shell { .. } => ("mesh_vertex", ["mesh_fragment", "mesh_layers"]),
+    };
+    let is_layers = target.is_none();
+    let impostor = wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() };
+    let primitive = match kind {
+        Kind::Atom | Kind::Connector => impostor,
+        // Meshes may be open: both sides are drawn.
+        Kind::Mesh => wgpu::PrimitiveState::default(),
+        Kind::Shell { mirrored } => wgpu::PrimitiveState {
+            front_face: if mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
+            cull_mode: Some(wgpu::Face::Front),
+            ..Default::default()
+        },
+    };
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("visibility"),
+        bind_group_layouts: groups,
+        immediate_size: 0,
+    });
+    let targets: Vec<_> = target.into_iter().map(|format| Some(format.into())).collect();
+    gpu.render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("visibility"),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some(vertex),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive,
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: DEPTH_FORMAT,
+            depth_write_enabled: Some(!is_layers),
+            // Layers test depths themselves: what they write does not wait for the test.
+            depth_compare: Some(match is_layers {
+                true => wgpu::CompareFunction::Always,
+                false => wgpu::CompareFunction::Greater,
+            }),
+            stencil: Default::default(),
+            bias: Default::default(),
+        }),
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some(fragment[usize::from(is_layers)]),
+            compilation_options: Default::default(),
+            targets: &targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
 /// The WGSL of the triangles' visibility, or of the shell that is their outline. `numbered`: the device numbers the
 /// triangles of a draw.
 pub fn mesh_module(key: VisibilityKey, shell: bool, numbered: bool) -> Module {
     let mut module = Module::default();
-    if numbered {
-        module.add_generated("extensions", "enable primitive_index;".to_owned());
-    }
-    module.add(wgsl!("lib/view.wgsl"));
-    module.add(wgsl!("lib/ids.wgsl"));
-    module.add(wgsl!("lib/texels.wgsl"));
-    module.add(wgsl!("lib/objects.wgsl"));
-    module.add(wgsl!("lib/mesh.wgsl"));
-    module.add(wgsl!("lib/drawn.wgsl"));
-    module.add(if key.light { wgsl!("lib/seen_light_mesh.wgsl") } else { wgsl!("lib/seen_camera_mesh.wgsl") });
-    module.add(wgsl!("objects/mesh.wgsl"));
+    add_extensions(&mut module, numbered);
+    module.add_generated("view options", format!("const ORTHOGRAPHIC: bool = {};", key.orthographic));
+    add_triangles(&mut module, key, shell, numbered);
     if key.drawn.is_layers() {
         module.add(wgsl!("lib/layers.wgsl"));
         module.add(wgsl!("layers/store.wgsl"));
-    }
-    let (parameter, index) = match numbered {
-        true => (", @builtin(primitive_index) triangle: u32", "in.id + triangle"),
-        false => ("", "in.id"),
-    };
-    module.add_generated(
-        "mesh options",
-        format!(
-            "{}const SHELL: bool = {shell};\nconst NUMBERED: bool = {numbered};\nconst ORTHOGRAPHIC: bool = {};\n\
-             @fragment\nfn mesh_fragment(in: MeshVarying{parameter}) -> VisibilityOut {{\n    \
-             return mesh_out(in.position, {index});\n}}",
-            key.drawn.constants(),
-            key.orthographic
-        ),
-    );
-    if key.drawn.is_layers() {
-        let text = format!(
-            "@fragment\nfn mesh_layers(in: MeshVarying{parameter}) {{\n    \
-             add_layer(in.position.xy, make_id(KIND_MESH, {index}), mesh_depth(in.position));\n}}"
-        );
-        module.add_generated("mesh layers", text);
+        add_triangle_layers(&mut module, numbered);
     }
     module
 }
 
-/// The WGSL of the atoms' or connectors' visibility.
-pub fn visibility_module(atoms: bool, key: VisibilityKey) -> Module {
-    let mut module = Module::new(&[
+/// What comes first in a module of triangles.
+pub fn add_extensions(module: &mut Module, numbered: bool) {
+    if numbered {
+        module.add_generated("extensions", "enable primitive_index;".to_owned());
+    }
+}
+
+/// What WGSL says of a triangle's number: a parameter of its entry, and its index.
+fn triangle_words(numbered: bool) -> (&'static str, &'static str) {
+    match numbered {
+        true => (", @builtin(primitive_index) triangle: u32", "in.id + triangle"),
+        false => ("", "in.id"),
+    }
+}
+
+/// Adds the WGSL that draws triangles.
+pub fn add_triangles(module: &mut Module, key: VisibilityKey, shell: bool, numbered: bool) {
+    for file in [
         wgsl!("lib/view.wgsl"),
         wgsl!("lib/ids.wgsl"),
         wgsl!("lib/texels.wgsl"),
         wgsl!("lib/objects.wgsl"),
+        wgsl!("lib/scene.wgsl"),
+        wgsl!("lib/mesh.wgsl"),
+        wgsl!("lib/drawn.wgsl"),
+        if key.light { wgsl!("lib/seen_light_mesh.wgsl") } else { wgsl!("lib/seen_camera_mesh.wgsl") },
+        wgsl!("objects/mesh.wgsl"),
+    ] {
+        module.add(file);
+    }
+    let (parameter, index) = triangle_words(numbered);
+    module.add_generated(
+        "mesh options",
+        format!(
+            "{}const SHELL: bool = {shell};\nconst NUMBERED: bool = {numbered};\n\
+             @fragment\nfn mesh_fragment(in: MeshVarying{parameter}) -> VisibilityOut {{\n    \
+             return mesh_out(in.position, {index});\n}}",
+            key.drawn.constants(),
+        ),
+    );
+}
+
+/// Adds the entry that gives the fragments of triangles to `add_layer`.
+pub fn add_triangle_layers(module: &mut Module, numbered: bool) {
+    let (parameter, index) = triangle_words(numbered);
+    let text = format!(
+        "@fragment\nfn mesh_layers(in: MeshVarying{parameter}) {{\n    \
+         add_layer(in.position.xy, make_id(KIND_MESH, {index}), mesh_depth(in.position));\n}}"
+    );
+    module.add_generated("mesh layers", text);
+}
+
+/// The WGSL of the atoms' or connectors' visibility.
+pub fn visibility_module(atoms: bool, key: VisibilityKey) -> Module {
+    let mut module = Module::default();
+    module.add_generated("view options", format!("const ORTHOGRAPHIC: bool = {};", key.orthographic));
+    add_impostors(&mut module, atoms, key);
+    if key.drawn.is_layers() {
+        module.add(wgsl!("lib/layers.wgsl"));
+        module.add(wgsl!("layers/store.wgsl"));
+        add_impostor_layers(&mut module, atoms);
+    }
+    module
+}
+
+/// Adds the WGSL that draws atoms or connectors.
+pub fn add_impostors(module: &mut Module, atoms: bool, key: VisibilityKey) {
+    for file in [
+        wgsl!("lib/view.wgsl"),
+        wgsl!("lib/ids.wgsl"),
+        wgsl!("lib/texels.wgsl"),
+        wgsl!("lib/objects.wgsl"),
+        wgsl!("lib/scene.wgsl"),
         wgsl!("lib/intersect.wgsl"),
         wgsl!("lib/hull.wgsl"),
         wgsl!("lib/billboard.wgsl"),
         wgsl!("lib/drawn.wgsl"),
-    ]);
-    let constants = key.drawn.constants();
-    module.add_generated(
-        "visibility options",
-        format!("{constants}const HULL: bool = {};\nconst ORTHOGRAPHIC: bool = {};", key.hulls, key.orthographic),
-    );
-    module.add(if key.light { wgsl!("lib/seen_light.wgsl") } else { wgsl!("lib/seen_camera.wgsl") });
-    module.add(if atoms { wgsl!("objects/atom.wgsl") } else { wgsl!("objects/connector.wgsl") });
-    if key.drawn.is_layers() {
-        module.add(wgsl!("lib/layers.wgsl"));
-        module.add(wgsl!("layers/store.wgsl"));
-        module.add(if atoms { wgsl!("layers/atom.wgsl") } else { wgsl!("layers/connector.wgsl") });
+        if key.light { wgsl!("lib/seen_light.wgsl") } else { wgsl!("lib/seen_camera.wgsl") },
+        if atoms { wgsl!("objects/atom.wgsl") } else { wgsl!("objects/connector.wgsl") },
+    ] {
+        module.add(file);
     }
-    module
+    let constants = key.drawn.constants();
+    module.add_generated("visibility options", format!("{constants}const HULL: bool = {};", key.hulls));
+}
+
+/// Adds the entry that gives the fragments of atoms or connectors to `add_layer`.
+pub fn add_impostor_layers(module: &mut Module, atoms: bool) {
+    module.add(if atoms { wgsl!("layers/atom.wgsl") } else { wgsl!("layers/connector.wgsl") });
 }

@@ -44,6 +44,18 @@ pub enum GpuError {
         /// Bytes that one binding may hold.
         limit: u64,
     },
+    /// More of something than a method has room to number.
+    #[error("{count} {what} are more than method {method:?} tells apart: at most {limit}")]
+    TooManyKinds {
+        /// What there is too much of.
+        what: &'static str,
+        /// How many.
+        count: usize,
+        /// How many it tells apart.
+        limit: usize,
+        /// As style files name it.
+        method: &'static str,
+    },
     /// Whoever asked for the picture does not want it any more.
     #[error("the picture was broken off")]
     BrokenOff,
@@ -273,7 +285,7 @@ impl Gpu {
         }
     }
 
-    /// A compute pipeline with one group.
+    /// A compute pipeline with these groups.
     ///
     /// # Errors
     /// [`GpuError::Driver`] with the driver's words where it does not fit its shader.
@@ -282,13 +294,13 @@ impl Gpu {
         label: &'static str,
         module: &Module,
         entry: &str,
-        layout: &wgpu::BindGroupLayout,
+        groups: &[Option<&wgpu::BindGroupLayout>],
     ) -> Result<wgpu::ComputePipeline, GpuError> {
         let module = module.compile(self, label)?;
         Counting::one(&self.counting.pipelines);
         let layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(label),
-            bind_group_layouts: &[Some(layout)],
+            bind_group_layouts: groups,
             immediate_size: 0,
         });
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);

@@ -226,6 +226,14 @@ pub trait Experiment: Sync {
     fn needs_gpu(&self) -> bool {
         true
     }
+    /// Rounds that are due even where an ordinary run has spent its time.
+    fn least_rounds(&self) -> usize {
+        0
+    }
+    /// Whether every round times the passes, instead of the first alone.
+    fn times_passes(&self) -> bool {
+        false
+    }
     /// How its numbers come about: truth, samples, what is left out. One paragraph each.
     fn conditions(&self, setup: &Setup) -> Vec<String>;
     /// What its chart says, in two sentences with the figures of these rows.

@@ -105,7 +105,9 @@ pub fn document(report: &Report) -> Json {
 
 fn row(row: &Row) -> Json {
     let [median, min, max] = [0.5, 0.0, 1.0].map(|share| quantile(&row.frame_ms, share));
-    let passes: Map<String, Json> = row.pass_ms.iter().map(|(name, ms)| ((*name).to_owned(), json!(ms))).collect();
+    let passes = |share: f64| -> Map<String, Json> {
+        row.pass_ms(share).into_iter().map(|(name, ms)| (name.to_owned(), json!(ms))).collect()
+    };
     json!({
         "scene": row.entry.scene,
         "method": row.entry.method,
@@ -113,7 +115,8 @@ fn row(row: &Row) -> Json {
         "published": row.entry.is_published,
         "size": row.entry.size,
         "ms": { "median": median, "min": min, "max": max },
-        "passes": passes,
+        "passes": passes(0.5),
+        "pass_quartiles": [passes(0.25), passes(0.75)],
         "bytes": row.bytes,
         "error": row.error.as_ref().map(error),
         "figures": row.figures.iter().map(|(name, value)| ((*name).to_owned(), json!(value))).collect::<Map<_, _>>(),
@@ -267,7 +270,8 @@ fn table(page: &mut String, report: &Report) {
         if per_pixel {
             let _ = write!(page, "<td>{}</td>", short(row.median_ns_per_pixel()));
         } else {
-            let passes: Vec<String> = row.pass_ms.iter().map(|(name, ms)| format!("{name} {}", short(*ms))).collect();
+            let passes: Vec<String> =
+                row.pass_ms(0.5).iter().map(|(name, ms)| format!("{name} {}", short(*ms))).collect();
             let mebibytes = short(row.bytes as f64 / f64::from(1 << 20));
             let _ = write!(page, "<td>{}</td><td>{mebibytes}</td>", escaped(&passes.join(", ")));
         }

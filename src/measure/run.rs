@@ -9,6 +9,9 @@ use super::experiment::{Case, ChartKind, Entry, Experiment, Figure, GoOn, Measur
 use super::metrics::{self, Metrics, Options};
 use crate::scene::Image;
 
+/// Milliseconds of each pass of a frame, by its name.
+pub type PassTimes = Vec<(&'static str, f64)>;
+
 /// Rounds of an ordinary run.
 const ROUNDS: usize = 5;
 /// Rounds of a thorough one.
@@ -23,8 +26,8 @@ pub struct Row {
     pub entry: Entry,
     /// Milliseconds of a frame in each round.
     pub frame_ms: Vec<f64>,
-    /// Milliseconds of each pass of one frame.
-    pub pass_ms: Vec<(&'static str, f64)>,
+    /// Milliseconds of each pass of a frame, of the rounds that timed them: the first, or all.
+    pub pass_rounds: Vec<PassTimes>,
     /// Bytes of objects and targets on the device.
     pub bytes: u64,
     /// How far the picture is from the truth; none where there is no truth, or it was not reached.
@@ -44,7 +47,7 @@ impl Row {
         Row {
             entry: case.entry.clone(),
             frame_ms: Vec::new(),
-            pass_ms: Vec::new(),
+            pass_rounds: Vec::new(),
             bytes: 0,
             error: None,
             figures: Vec::new(),
@@ -57,6 +60,16 @@ impl Row {
     /// A figure by its name.
     pub fn figure(&self, name: &str) -> Option<f64> {
         self.figures.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
+    }
+
+    /// Milliseconds of each pass of a frame of which this share of the rounds took less; 0.5 for the median.
+    pub fn pass_ms(&self, share: f64) -> PassTimes {
+        let first = self.pass_rounds.first().map_or(&[][..], Vec::as_slice);
+        let of = |name: &'static str| {
+            let rounds = self.pass_rounds.iter().flatten().filter(|(known, _)| *known == name);
+            (name, quantile(&rounds.map(|(_, ms)| *ms).collect::<Vec<_>>(), share))
+        };
+        first.iter().map(|(name, _)| of(name)).collect()
     }
 
     /// Median milliseconds of a frame.
@@ -144,20 +157,30 @@ pub fn geometric_mean(values: impl IntoIterator<Item = f64>) -> f64 {
 #[derive(Debug, Clone, Copy)]
 struct Plan {
     rounds: usize,
+    /// Rounds that are due even where the time is spent.
+    least: usize,
     end: Option<Instant>,
+    /// Whether every round times the passes.
+    times_passes: bool,
 }
 
 impl Plan {
     fn new(thorough: bool, start: Instant) -> Plan {
-        match thorough {
-            true => Plan { rounds: ROUNDS_THOROUGH, end: None },
-            false => Plan { rounds: ROUNDS, end: Some(start + BUDGET) },
-        }
+        let (rounds, end) = match thorough {
+            true => (ROUNDS_THOROUGH, None),
+            false => (ROUNDS, Some(start + BUDGET)),
+        };
+        Plan { rounds, least: 0, end, times_passes: false }
+    }
+
+    fn of(experiment: &dyn Experiment, thorough: bool, start: Instant) -> Plan {
+        let (plan, least) = (Plan::new(thorough, start), experiment.least_rounds());
+        Plan { rounds: plan.rounds.max(least), least, times_passes: experiment.times_passes(), ..plan }
     }
 
     /// Whether another round begins after so many, the last of which took `last`.
     fn goes_on(&self, done: usize, now: Instant, last: Duration) -> bool {
-        done < self.rounds && self.end.is_none_or(|end| now + last <= end)
+        done < self.rounds && (done < self.least || self.end.is_none_or(|end| now + last <= end))
     }
 }
 
@@ -173,7 +196,7 @@ pub fn run(
     go_on: GoOn<'_>,
 ) -> Result<Report, MeasureError> {
     let (start, date) = (Instant::now(), date::now());
-    let plan = Plan::new(setup.thorough, start);
+    let plan = Plan::of(experiment, setup.thorough, start);
     let mut cases = experiment.cases(setup)?;
     let mut rows: Vec<Row> = cases.iter().map(Row::new).collect();
     let total = (cases.len() * (plan.rounds + 1)) as u64;
@@ -224,8 +247,10 @@ fn measure(
         for (case, row) in cases.iter_mut().zip(rows.iter_mut()) {
             check()?;
             row.frame_ms.push(case.subject.frame_ms()?);
+            if *rounds == 0 || plan.times_passes {
+                row.pass_rounds.push(case.subject.pass_ms()?);
+            }
             if *rounds == 0 {
-                row.pass_ms = case.subject.pass_ms()?;
                 row.bytes = case.subject.bytes();
                 if case.truth.is_some() {
                     row.picture = Some(Rc::new(case.subject.picture()?));
@@ -283,6 +308,8 @@ mod tests {
         assert!(!plan.goes_on(ROUNDS, start, second));
         // A round that would not end in time does not begin.
         assert!(!plan.goes_on(1, start + BUDGET - second, 2 * second));
+        let patient = Plan { least: 3, ..plan };
+        assert!(patient.goes_on(2, start + 2 * BUDGET, second) && !patient.goes_on(3, start + 2 * BUDGET, second));
         let thorough = Plan::new(true, start);
         assert!(thorough.goes_on(ROUNDS_THOROUGH - 1, start + 100 * BUDGET, BUDGET));
     }

@@ -6,9 +6,10 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use super::experiment::{MeasureError, Subject, Truth};
+use super::run::PassTimes;
 use crate::config::{self, Catalog, Source, Style};
 use crate::engine::exact::Exact;
-use crate::engine::{self, EffectForm, Engine, Gpu, GpuError, Request, ShadowQuality};
+use crate::engine::{self, BkbForm, EffectForm, Engine, Gpu, GpuError, Request, ShadowQuality};
 use crate::scene::{Image, Scene};
 use crate::shipped::{self, SCENES, Shipped};
 
@@ -71,7 +72,7 @@ impl Look {
 }
 
 /// What of a stage its engine shows.
-type Shown = (Rc<str>, Request, ShadowQuality, Vec<EffectForm>);
+type Shown = (Rc<str>, Request, ShadowQuality, Vec<EffectForm>, BkbForm);
 
 /// A scene on the device, which cases show in styles and sizes of theirs.
 pub struct Stage {
@@ -90,7 +91,8 @@ impl Stage {
     /// The scene in a style, as a frame that is measured.
     pub fn frame(self: &Rc<Stage>, look: &Look, request: Request) -> GpuFrame {
         let shadows = ShadowQuality::default();
-        GpuFrame { stage: Rc::clone(self), look: look.clone(), request, shadows, forms: Vec::new() }
+        let (forms, bkb_form) = (Vec::new(), BkbForm::default());
+        GpuFrame { stage: Rc::clone(self), look: look.clone(), request, shadows, forms, bkb_form }
     }
 }
 
@@ -111,6 +113,8 @@ pub struct GpuFrame {
     pub shadows: ShadowQuality,
     /// Forms of post effects that no style asks for.
     pub forms: Vec<EffectForm>,
+    /// The form of the bucketed k-buffer, where the style asks for one.
+    pub bkb_form: BkbForm,
 }
 
 impl GpuFrame {
@@ -121,15 +125,29 @@ impl GpuFrame {
         let style = || Style::clone(&self.look.style);
         let engine =
             engine.get_or_insert_with(|| Engine::new(Arc::clone(&self.stage.gpu), self.stage.scene.clone(), style()));
-        let wanted = (Rc::clone(&self.look.name), self.request, self.shadows, self.forms.clone());
+        let wanted = (Rc::clone(&self.look.name), self.request, self.shadows, self.forms.clone(), self.bkb_form);
         if shown.as_ref() != Some(&wanted) {
             engine.set_style(style());
             engine.set_shadow_quality(self.shadows);
             engine.set_forms(self.forms.clone());
+            engine.set_bkb_form(self.bkb_form);
             engine.draw(&self.request, false, &mut |_| ControlFlow::Continue(()))?;
             *shown = Some(wanted);
         }
         Ok(draw(engine)?)
+    }
+}
+
+impl GpuFrame {
+    /// Draws one frame; returns its milliseconds by the wall clock, and those of its passes.
+    ///
+    /// # Errors
+    /// [`MeasureError`] where it cannot be drawn.
+    pub fn timed_ms(&self) -> Result<(f64, PassTimes), MeasureError> {
+        self.warm(|engine| {
+            let ms = engine.draw(&self.request, true, &mut |_| ControlFlow::Continue(()))?;
+            Ok((ms, engine.pass_times().clone()))
+        })
     }
 }
 

@@ -106,3 +106,36 @@ fn what_is_left_out_says_why() {
     folder.run("explain water --size 0x5").refused(2, "at least 1x1");
     folder.run("explain water --samples 0").refused(2, "--samples");
 }
+
+#[test]
+fn the_bucketed_k_buffer_is_told_with_its_bytes_and_bands() {
+    let Some(folder) = Folder::with_adapter("explain-bkb") else { return };
+    let style = |k: u32, effects: &str| {
+        let text = format!(
+            r#"{{ "mapping": {{ "*": "glass", "post_effects": [{effects}] }},
+                "shaders": [{{ "name": "glass", "shader": "basic", "properties": {{ "opacity": 0.5 }} }}],
+                "transparency": {{ "method": "bkb", "k": {k}, "memory_mb": 16 }} }}"#
+        );
+        folder.write("s.json", text);
+    };
+    let bkb = "bkb_cleared bkb_inserted bkb_bucketed bkb_stored bkb_stylised bkb_blended";
+    let bytes = |passes: &[Json]| passes.iter().map(|pass| pass["bytes"].as_u64().expect("bytes")).sum::<u64>();
+    for (k, size, in_bands) in [(8, "90x70", false), (64, "200x150", true)] {
+        style(k, "");
+        let args = format!("caffeine -s s.json --size {size} --samples 1");
+        let passes = passes(&folder, &args);
+        assert_eq!(names(&passes, true), format!("visibility shade {bkb}"));
+        let reason = passes.iter().find(|pass| pass["name"] == "bkb_cleared").map(|pass| pass["reason"].to_string());
+        assert_eq!(reason.expect("a reason").contains("in 2 bands of rows"), in_bands);
+        let line: Json = serde_json::from_str(&folder.run(&format!("render {args} --json")).done().out).expect("JSON");
+        let targets = line["target_bytes"].as_object().expect("targets").values();
+        assert_eq!(bytes(&passes), targets.map(|bytes| bytes.as_u64().expect("bytes")).sum::<u64>(), "{line}");
+    }
+    // What follows sees nearest surfaces, of which lists have the ids.
+    style(8, r#""outlinePost""#);
+    let passes = passes(&folder, "caffeine -s s.json --size 90x70 --samples 1");
+    let lists = "layers_counted layers_room layers_written layers_blended layers_nearest";
+    assert!(names(&passes, true).starts_with(&format!("visibility shade {lists} {bkb} outline_seeds")));
+    style(64, "");
+    folder.run("render caffeine -s s.json --size 8192x16 --samples 1 --json").refused(3, "layers of three rows");
+}

@@ -7,6 +7,7 @@ use std::sync::OnceLock;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{AddressSpace, Handle, Type, TypeInner};
 use restyle::effects::EFFECTS;
+use restyle::frame::bkb::{self, BkbForm, BkbKey, FragmentKind};
 use restyle::frame::{
     Drawn, EffectKey, Finish, ShadeKey, ShaderNeeds, ShadowFilter, VisibilityKey, aov_module, effect_module, layers,
     mesh_module, resolve_module, shade_module, visibility_module,
@@ -80,11 +81,29 @@ pub fn survey() -> &'static Survey {
         for key in shade_keys() {
             survey.read(&format!("shade, {key:?}"), &shade_module(&key));
         }
+        survey.read("buckets of the k-buffer", &bkb::buckets_module());
+        for key in bkb_keys() {
+            survey.read_bkb(&key);
+        }
         survey
     })
 }
 
 impl Survey {
+    /// Reads all modules of a bucketed k-buffer.
+    fn read_bkb(&mut self, key: &BkbKey) {
+        self.read(&format!("clearing of the k-buffer, {:?}", key.form), &bkb::clear_module(key.form));
+        self.read(&format!("blending of the k-buffer, {key:?}"), &bkb::blend_module(key));
+        for kind in FragmentKind::ALL.into_iter().filter(|kind| kind.is_in(&key.shade)) {
+            for numbered in [false, true] {
+                let inserted = bkb::insert_module(kind, key.form, key.shade.orthographic, numbered);
+                self.read(&format!("insertion of {kind:?}, numbered {numbered}, {:?}", key.form), &inserted);
+                let stored = bkb::store_module(kind, key, numbered);
+                self.read(&format!("storing of {kind:?}, numbered {numbered}, {key:?}"), &stored);
+            }
+        }
+    }
+
     fn read(&mut self, name: &str, module: &Module) {
         let text = module.text();
         self.files.extend((1..=text.lines().count()).map(|line| module.place(line).0));
@@ -188,6 +207,25 @@ fn effect_keys() -> Vec<EffectKey> {
                 let key =
                     |(finish, leaves_surfaces)| EffectKey { effect, features, orthographic, finish, leaves_surfaces };
                 keys.extend(ends.map(key));
+            }
+        }
+    }
+    keys
+}
+
+/// Keys of the bucketed k-buffer: each form with each camera and end, all shaders, with and without shadows and each kind of object.
+fn bkb_keys() -> Vec<BkbKey> {
+    let forms = [BkbForm::Published, BkbForm::OneWay, BkbForm::BruteForce, BkbForm::DualPass];
+    let all_shaders = (1 << SHADERS.len()) - 1;
+    let mut keys = Vec::new();
+    for form in forms {
+        for orthographic in [0, 1 << 11] {
+            for (shadows, finish) in [(0, Finish::Next), (1 << 7, Finish::Add), (1 << 7, Finish::Encode)] {
+                for kinds in [0b11, 1 << 13, 1 << 13 | 0b11] {
+                    let shade = shade_key(all_shaders, kinds | shadows | orthographic, u32::MAX);
+                    let keeps_kappa = finish == Finish::Add && form != BkbForm::DualPass;
+                    keys.push(BkbKey { shade, form, finish, keeps_kappa });
+                }
             }
         }
     }

@@ -53,7 +53,7 @@ fn stack(depths: &[f64], scale: f64) -> Scene {
 const COLORS: [&str; 2] = ["#d04020", "#2060e0"];
 const BACKGROUND: &str = "#f0e0a0";
 
-fn load(text: &str) -> config::Style {
+pub fn load(text: &str) -> config::Style {
     let catalog = Catalog { shaders: &engine::catalog(), kinds: engine::DRAWN_KINDS };
     config::load(&Source::new("test.json", text), &catalog).unwrap_or_else(|wrong| panic!("{wrong}"))
 }

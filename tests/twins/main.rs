@@ -1,6 +1,7 @@
 //! CPU twins of the shaders, function by function, what they are held to, and the GPU held to them and to truths.
 
 mod basic;
+mod bkb;
 mod brdf;
 mod brdf_table;
 mod curvature;

@@ -44,10 +44,11 @@ impl Strip {
 }
 
 /// Parameters without pictures: they change nothing in a still, or no more than its noise, or only what others show is changed.
-const UNSEEN: [(&str, &str); 19] = [
+const UNSEEN: [(&str, &str); 20] = [
     ("geometry", "file_unit"),
     ("lights", "movable"),
     ("transparency", "memory_mb"),
+    ("transparency", "method"),
     // As in basic.
     ("toon", "opacity"),
     ("unlit", "opacity"),
@@ -331,6 +332,14 @@ const SETTINGS: &[Setting] = &[
         scene: Shown::Shipped("benzene"),
         said: "Benzene from the side, with `layers` of `[0, 0.1, 0.3, 0.7]` and a `blur` of `70pt` where those do not change.",
         style: r##"{ "camera": { "position": [0.6, -2.2, 1.4] }, "shaders": [{ "name": "shown", "properties": { "layers": [0, 0.1, 0.3, 0.7], "blur": "70pt" } }] }"##,
+    },
+    Setting {
+        group: "transparency",
+        param: "k",
+        scene: Shown::Shipped("benzene"),
+        said: "Benzene of glass, its `method` of `\"bkb\"`.",
+        style: r##"{ "geometry": { "atom": "vdw", "scale": 0.9 }, "transparency": { "method": "bkb" },
+            "shaders": [{ "name": "shown", "properties": { "opacity": 0.5 } }] }"##,
     },
     // Any shader, also one that this table does not know yet.
     Setting {

@@ -1,6 +1,7 @@
 //! The experiments: one file each, and one line in [`EXPERIMENTS`].
 
 mod dof;
+mod fig10;
 mod geometry;
 mod looks;
 mod orbit;
@@ -25,6 +26,7 @@ pub const EXPERIMENTS: &[&dyn Experiment] = &[
     &dof::Dof,
     &orbit::Orbit,
     &transparency::Transparency,
+    &fig10::Fig10,
 ];
 
 /// The experiment of this name.

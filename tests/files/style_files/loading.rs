@@ -116,7 +116,6 @@ fn the_example_of_the_manual_loads() {
             "s.json:5:85 (mapping.post_effects[1]): warning: post effect \"dofPost\" is drawn by the reference renderer alone so far (--renderer reference): it is left out",
             "s.json:8:54 (shaders[2].shader): warning: shader \"curvature\" is not drawn by this version yet: its objects are drawn with \"basic\"",
             "s.json:9:56 (shaders[3].shader): warning: post effect \"ssaoPost\" is drawn by the reference renderer alone so far (--renderer reference): it is left out",
-            "s.json:12:39 (transparency.method): warning: \"method\" is not drawn by this version yet: it changes nothing",
         ]
     );
     let water = [(Attribute::Element, "O"), (Attribute::Residue, "HOH")];

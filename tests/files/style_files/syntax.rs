@@ -542,7 +542,7 @@ s.json:4:3: a comma is missing before this key
 s.json:4:21: a key needs quotes: write "k"
 s.json:4:24 (transparency.k): "k" must be a whole number, 0 or more, not the number 2.5
 s.json:4:42: this number is too large
-s.json:4:49 (transparency.methd): transparency has no "methd"; did you mean "method"? allowed: memory_mb
+s.json:4:49 (transparency.methd): transparency has no "methd"; did you mean "method"? allowed: method, k, memory_mb
 s.json:5:49: a text needs quotes: write "dofPost"
 s.json:5:58: the file ends, but the { at 1:1 is not closed: write } at its end"#,
     ),
