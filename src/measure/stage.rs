@@ -51,6 +51,11 @@ impl Look {
         Ok(Look { name: Rc::from(name), style: Rc::new(style) })
     }
 
+    /// The style.
+    pub fn style(&self) -> Style {
+        Style::clone(&self.style)
+    }
+
     /// The same style without post effects.
     pub fn without_effects(&self) -> Look {
         let mut style = Style::clone(&self.style);
@@ -122,7 +127,7 @@ impl GpuFrame {
     fn warm<T>(&self, draw: impl FnOnce(&mut Engine) -> Result<T, GpuError>) -> Result<T, MeasureError> {
         let mut engine = self.stage.engine.borrow_mut();
         let mut shown = self.stage.shown.borrow_mut();
-        let style = || Style::clone(&self.look.style);
+        let style = || self.look.style();
         let engine =
             engine.get_or_insert_with(|| Engine::new(Arc::clone(&self.stage.gpu), self.stage.scene.clone(), style()));
         let wanted = (Rc::clone(&self.look.name), self.request, self.shadows, self.forms.clone(), self.bkb_form);

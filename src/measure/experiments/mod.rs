@@ -3,6 +3,7 @@
 mod dof;
 mod fig10;
 mod geometry;
+mod hidden;
 mod looks;
 mod orbit;
 mod outlines;
@@ -26,6 +27,7 @@ pub const EXPERIMENTS: &[&dyn Experiment] = &[
     &dof::Dof,
     &orbit::Orbit,
     &transparency::Transparency,
+    &hidden::Hidden,
     &fig10::Fig10,
 ];
 
