@@ -251,9 +251,14 @@ impl Bkb {
         Ok(())
     }
 
-    /// Forgets the pipelines, so that they are built anew.
-    pub fn forget_pipelines(&mut self) {
-        self.pipelines.clear();
+    /// Builds the pipelines that are there anew, from the shaders as they are now.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] where a shader does not compile; nothing has changed then.
+    pub fn rebuild(&mut self, gpu: &Gpu, visibility: &Visibility, shade: &Shade) -> Result<(), GpuError> {
+        let fresh = |(key, _): &(BkbKey, Pipelines)| Ok((key.clone(), Pipelines::new(gpu, visibility, shade, key)?));
+        self.pipelines = self.pipelines.iter().map(fresh).collect::<Result<_, GpuError>>()?;
+        Ok(())
     }
 
     /// Gives the memory back.
