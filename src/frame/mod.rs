@@ -334,11 +334,11 @@ impl Renderer {
         let resolve = self.resolve.rebuilt(&self.gpu)?;
         self.shade.rebuild(&self.gpu, &visibility)?;
         self.post.rebuild(&self.gpu, &visibility)?;
+        self.bkb.rebuild(&self.gpu, &visibility, &self.shade)?;
         self.visibility = visibility;
         self.resolve = resolve;
         self.aov = aov::Aov::default();
         self.layers.forget_pipelines();
-        self.bkb.forget_pipelines();
         Ok(())
     }
 

@@ -679,6 +679,25 @@ fn pictures_in_bands_are_the_picture() {
 }
 
 #[test]
+fn pictures_in_tiles_are_the_picture() {
+    let Some(device) = device_of_curvature() else { return };
+    // A column more than one tile holds, with the ball in it.
+    let request = Request::new([2049, 2048], 1);
+    let mut engine = Engine::new(device, mesh_ball(), glass(r#", "zoom": 3"#, 2, 512));
+    let mut rows = Vec::new();
+    engine
+        .draw_rows(&request, &mut |_| std::ops::ControlFlow::Continue(()), &mut |bytes| {
+            rows.extend_from_slice(bytes);
+            Ok(())
+        })
+        .expect("a picture in tiles");
+    let Pixels::U8(whole) = engine.still(&request).expect("the picture").pixels else {
+        panic!("8 bits were asked for")
+    };
+    assert!(rows == whole);
+}
+
+#[test]
 fn rows_that_do_not_fit_are_told() {
     let Some(mut engine) = engine(squares(2, 1), style(&bkb(64).replace("64", r#"64, "memory_mb": 16"#), 0.5, ""))
     else {

@@ -8,7 +8,8 @@
 //!
 //! Where the paper is silent: a shape is an object (atom, connector, or part of a mesh), of which 65,536 have numbers of their own; depth
 //! is in even steps between the near and the far end of what is drawn; colours are sRGB of 8 bits a channel, so that light above 1 is cut
-//! off. Twin: `tests/twins/bkb.rs`. Limits: surfaces beyond k are not there; two of one shape at one depth are one; opacity has 8 bits.
+//! off. Twin: `tests/twins/bkb.rs`. Limits: surfaces beyond k are not there; two of one shape at one depth are one; opacity has 8 bits; on a
+//! device that rounds a depth differently in the two passes, which are different shaders, that fragment is lost.
 
 mod modules;
 mod pipelines;
@@ -251,9 +252,14 @@ impl Bkb {
         Ok(())
     }
 
-    /// Forgets the pipelines, so that they are built anew.
-    pub fn forget_pipelines(&mut self) {
-        self.pipelines.clear();
+    /// Builds the pipelines that are there anew, from the shaders as they are now.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] where a shader does not compile; nothing has changed then.
+    pub fn rebuild(&mut self, gpu: &Gpu, visibility: &Visibility, shade: &Shade) -> Result<(), GpuError> {
+        let fresh = |(key, _): &(BkbKey, Pipelines)| Ok((key.clone(), Pipelines::new(gpu, visibility, shade, key)?));
+        self.pipelines = self.pipelines.iter().map(fresh).collect::<Result<_, GpuError>>()?;
+        Ok(())
     }
 
     /// Gives the memory back.
