@@ -656,7 +656,7 @@ fn largest_step(a: &Image, b: &Image) -> u16 {
 fn device_of_curvature() -> Option<Arc<Gpu>> {
     gpu::device()?;
     let text = include_str!("../../shaders/bkb/stylise.wgsl");
-    let call = "stylised(word >> 24u, unpack_color(word), kappa, abs(kappa), fragment.depth)";
+    let call = "stylised(material, unpack_color(word), kappa, depth_of(fragment))";
     assert!(text.contains(call));
     let edited = text.replace(call, "vec4<f32>(vec3<f32>(0.5 + 0.5 * kappa), 0.4)");
     let gpu = Gpu::open().expect("an adapter that opened before");

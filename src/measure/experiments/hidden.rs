@@ -17,7 +17,7 @@ use crate::shipped::{LOOKS, find};
 
 const SCENE: &str = "gearbox";
 const LOOK: &str = "xray";
-const SIZE: [u32; 2] = [256, 256];
+const SIZE: [u32; 2] = [512, 512];
 /// Of the parts, every so many are taken out in turn.
 const EVERY: usize = 5;
 /// Change of display values from which on the lack of a part is seen, on average over its pixels.
