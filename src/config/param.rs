@@ -12,7 +12,7 @@
 pub use super::color::{BaseColor, Srgba};
 pub use super::length::Length;
 pub use super::selector::Selector;
-pub use super::transfer::{Transfer, TransferKind};
+pub use super::transfer::{COLOR_SIZE, OPACITY_SIZE, Transfer, TransferKind};
 pub use super::values::Values;
 
 /// Largest magnitude of any number in a style. Ours: far above any use, and safe to square in 32-bit floats.

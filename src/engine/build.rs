@@ -392,6 +392,27 @@ impl MaterialNumbers {
 /// Opacity below which materials are drawn in layers, or the next number below.
 const MOST_OF_A_LAYER: f32 = 1.0 - f32::EPSILON / 2.0;
 
+/// Adds a set of a shader's parameters to the materials and returns its number.
+fn add_set(materials: &mut Materials, shader: usize, values: &Values, context: &MaterialContext<'_>) -> u32 {
+    let registered = SHADERS[shader];
+    let table = registered.tables(values);
+    let mut first = 0;
+    if !table.is_empty() {
+        let tables = materials.tables.entry(shader).or_default();
+        let known = tables.chunks_exact(table.len()).position(|known| *known == table);
+        first = known.map_or(tables.len(), |known| known * table.len());
+        if known.is_none() {
+            tables.extend(&table);
+        }
+    }
+    let bytes = registered.material(values, &MaterialContext { table: first as u32, ..*context });
+    *materials.features.entry(shader).or_default() |= registered.features_used(values);
+    let sets = materials.params.entry(shader).or_default();
+    let set = sets.len() / bytes.len().max(1);
+    sets.extend_from_slice(&bytes);
+    set as u32
+}
+
 /// The materials of what is `used`, by number.
 pub fn materials(style: &Style, used: &[MaterialUse], context: &MaterialContext<'_>) -> Materials {
     let mut materials = Materials::default();
@@ -401,11 +422,12 @@ pub fn materials(style: &Style, used: &[MaterialUse], context: &MaterialContext<
         // The loader accepts only names of the registry.
         let shader_index = shading::shader_index(shader_use.shader).unwrap_or(0);
         let shader = SHADERS[shader_index];
-        let set = materials.add(shader_index, &values, context);
+        let set = add_set(&mut materials, shader_index, &values, context);
         // A shader that stylises the light of another one has a set of that one's parameters as well.
         let lit_by = shader.lit_by(&values).and_then(shading::shader_index);
-        let lit =
-            lit_by.map(|lit_by| (lit_by, materials.add(lit_by, &values.taken_by(SHADERS[lit_by].params()), context)));
+        let lit = lit_by.map(|lit_by| {
+            (lit_by, add_set(&mut materials, lit_by, &values.taken_by(SHADERS[lit_by].params()), context))
+        });
         let (shade_shader, shade_index) = lit.unwrap_or((shader_index, set));
         let (stylist, stylist_index) = lit.map_or((0, 0), |_| (shader_index as u32 + 1, set));
         // What is blended in layers although it may cover all covers next to all.

@@ -8,9 +8,8 @@ use super::shade::{ShadeKey, ShaderNeeds};
 use super::shadow::ShadowFilter;
 use super::texels::KeptTexture;
 use super::visibility::DrawnKinds;
-use crate::config::Values;
 use crate::gpu::{Gpu, GpuError, KeptBuffer};
-use crate::shading::{MAX_MATERIALS, MaterialContext, SHADERS};
+use crate::shading::{MAX_MATERIALS, SHADERS};
 
 /// Materials of a style: what all share, and each shader's parameter sets.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -26,27 +25,6 @@ pub struct Materials {
 }
 
 impl Materials {
-    /// Adds a set of a shader's parameters and returns its number.
-    pub fn add(&mut self, shader: usize, values: &Values, context: &MaterialContext<'_>) -> u32 {
-        let registered = SHADERS[shader];
-        let table = registered.tables(values);
-        let mut first = 0;
-        if !table.is_empty() {
-            let tables = self.tables.entry(shader).or_default();
-            let known = tables.chunks_exact(table.len()).position(|known| *known == table);
-            first = known.map_or(tables.len(), |known| known * table.len());
-            if known.is_none() {
-                tables.extend(&table);
-            }
-        }
-        let bytes = registered.material(values, &MaterialContext { table: first as u32, ..*context });
-        *self.features.entry(shader).or_default() |= registered.features_used(values);
-        let sets = self.params.entry(shader).or_default();
-        let set = sets.len() / bytes.len().max(1);
-        sets.extend_from_slice(&bytes);
-        set as u32
-    }
-
     fn has_hulls(&self) -> bool {
         let Reach { px, world } = self.reach();
         px + world > 0.0

@@ -8,8 +8,7 @@ use glam::{DVec2, DVec3};
 use super::Optics;
 use super::primitive::Ray;
 use super::world::{Hit, Object, Surface, World};
-use crate::config::transfer::Transfer;
-use crate::shading::curvature::CurvatureMaterial;
+use crate::shading::curvature::{CurvatureMaterial, Transfer};
 
 /// Farther than any rim reaches.
 const FAR_PX: f64 = 1e9;

@@ -5,8 +5,8 @@
 //! `tests/twins/curvature.rs`.
 
 use super::{BASE_COLOR, MaterialContext, OPACITY, ObjectShader, basic, toon};
-use crate::config::param::{Param, Values};
-use crate::config::transfer::{COLOR_SIZE, OPACITY_SIZE, Transfer};
+pub use crate::config::param::Transfer;
+use crate::config::param::{COLOR_SIZE, OPACITY_SIZE, Param, Values};
 use crate::gpu::{GpuStruct, StructInfo, Wgsl};
 use crate::{gpu_struct, wgsl};
 

@@ -33,7 +33,7 @@ fn every_shader_has_its_files() {
         let own = format!("objects/{name}.wgsl");
         let wgsl = shader.wgsl().last().map(|file| file.path);
         assert_eq!(wgsl, Some(own.as_str()), "{name}: its own file comes last");
-        let entry = format!("fn {name}_shade(");
+        let entry = format!("fn {name}_{}(", if shader.stylises() { "stylised" } else { "shade" });
         assert!(text(&format!("shaders/{own}")).contains(&entry), "shaders/{own}: there is no `{entry}`");
         assert_eq!(shader.material_info().path, own, "{name}: its material is declared in its own file");
         assert!(at(&format!("src/shading/{name}.rs")).exists(), "src/shading/{name}.rs is missing");
