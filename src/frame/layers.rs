@@ -237,7 +237,12 @@ impl Layers {
         }
         if self.num_bands > size[1] {
             let bytes = self.capacity * FRAGMENT_BYTES * u64::from(self.num_bands) / u64::from(size[1].max(1));
-            return Err(GpuError::TooMany { what: "layers of one row", count: self.num_bands as usize, bytes, limit });
+            return Err(GpuError::TooMany {
+                what: "layers of one row, which transparency.memory_mb limits, too,",
+                count: self.num_bands as usize,
+                bytes,
+                limit,
+            });
         }
         let rows = size[1].div_ceil(self.num_bands);
         let band_bytes = u64::from(rows) * u64::from(size[0]) * 4;

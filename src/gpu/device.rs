@@ -33,7 +33,7 @@ pub enum GpuError {
         limit: u32,
     },
     /// More objects than one storage binding holds.
-    #[error("{count} {what} need {bytes} bytes, and this adapter binds at most {limit} at once")]
+    #[error("{count} {what} need {bytes} bytes, and at most {limit} can be bound at once")]
     TooMany {
         /// What there is too much of.
         what: &'static str,

@@ -483,8 +483,9 @@ impl World {
         let bending = shape.bending();
         let is_flat = is_flat(shape, vertices);
         let kappa = |vertex: u32| if is_flat { 0.0 } else { f64::from(bending.kappa[vertex as usize]) / scale };
-        let normal =
-            |vertex: u32| (placed.normals * unpack_normal(shape.normals[vertex as usize]).as_dvec3()).normalize();
+        let normal = |vertex: u32| {
+            (placed.normals * unpack_normal(shape.normals[vertex as usize]).as_dvec3()).normalize_or_zero()
+        };
         Some(Facet {
             corners: self.corners(index),
             normals: vertices.map(normal),

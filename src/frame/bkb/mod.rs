@@ -284,7 +284,7 @@ impl Bkb {
         let most_rows = plan.most_rows(gpu, size[0], memory_bytes);
         if most_rows < size[1].min(3) {
             return Err(GpuError::TooMany {
-                what: "layers of three rows",
+                what: "layers of three rows, which transparency.memory_mb limits, too,",
                 count: (3 * row_slots) as usize,
                 bytes: 3 * row_slots * plan.key.form.slot_bytes(),
                 limit: memory_bytes,
