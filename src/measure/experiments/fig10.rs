@@ -34,18 +34,32 @@ struct Kind {
     /// None for lists.
     form: Option<BkbForm>,
     opacity: f64,
+    /// Whether opacity is by curvature in lists, too.
+    is_curved: bool,
+}
+
+impl Kind {
+    const fn buffer(name: &'static str, form: BkbForm) -> Kind {
+        Kind { name, form: Some(form), opacity: OPACITY, is_curved: false }
+    }
+
+    const fn lists(name: &'static str, opacity: f64, is_curved: bool) -> Kind {
+        Kind { name, form: None, opacity, is_curved }
+    }
 }
 
 const BKB: usize = 0;
 const BRUTE_FORCE: usize = 2;
 
-const KINDS: [Kind; 6] = [
-    Kind { name: "bkb", form: Some(BkbForm::Published), opacity: OPACITY },
-    Kind { name: "bkb, no reverse check", form: Some(BkbForm::OneWay), opacity: OPACITY },
-    Kind { name: "brute_force", form: Some(BkbForm::BruteForce), opacity: OPACITY },
-    Kind { name: "dual_pass", form: Some(BkbForm::DualPass), opacity: OPACITY },
-    Kind { name: "constant", form: None, opacity: OPACITY },
-    Kind { name: "constant, nothing cut off", form: None, opacity: OPACITY_CLEAR },
+const KINDS: [Kind; 8] = [
+    Kind::buffer("bkb", BkbForm::Published),
+    Kind::buffer("bkb, no reverse check", BkbForm::OneWay),
+    Kind::buffer("brute_force", BkbForm::BruteForce),
+    Kind::buffer("dual_pass", BkbForm::DualPass),
+    Kind::lists("packed", OPACITY, true),
+    Kind::lists("packed, nothing cut off", OPACITY_CLEAR, true),
+    Kind::lists("constant", OPACITY, false),
+    Kind::lists("constant, nothing cut off", OPACITY_CLEAR, false),
 ];
 
 /// Passes of what the paper calls build, query and blend, by their names in timings.
@@ -109,14 +123,20 @@ fn scene_of(squares: &[Square]) -> Result<Scene, MeasureError> {
 fn look(kind: &Kind) -> Result<Look, MeasureError> {
     let method = if kind.form.is_some() { "bkb" } else { "packed" };
     let opacity = kind.opacity;
+    let shader = if kind.is_curved {
+        // On squares, which are flat, the same picture.
+        r#""curvature", "properties": { "shading": "unlit", "opacity_transfer": "constant", "color_transfer": "none", "contour_width": 0,"#
+    } else {
+        r#""unlit", "properties": {"#
+    };
     let text = format!(
         r##"{{ "camera": {{ "bgcolor": "#f4ead0", "orthographic": true, "position": [0, 0, 1], "zoom": 2.5 }},
               "mapping": {{ "*": "glass", "mesh[part=part0]": "other" }},
-              "shaders": [{{ "name": "glass", "shader": "unlit", "properties": {{ "base_color": "#2060d0", "opacity": {opacity} }} }},
-                {{ "name": "other", "shader": "unlit", "properties": {{ "base_color": "#d05020", "opacity": {opacity} }} }}],
+              "shaders": [{{ "name": "glass", "shader": {shader} "base_color": "#2060d0", "opacity": {opacity} }} }},
+                {{ "name": "other", "shader": {shader} "base_color": "#d05020", "opacity": {opacity} }} }}],
               "transparency": {{ "method": "{method}", "k": {SQUARES} }} }}"##
     );
-    Look::of_text(&format!("{method} {opacity}"), &text)
+    Look::of_text(&format!("{method} {opacity} {}", kind.is_curved), &text)
 }
 
 /// What the squares of each pixel come to, from the data: comparisons of fragments, fragments of a bucket, moves of the two sorts, and
@@ -232,8 +252,8 @@ impl Experiment for Fig10 {
                  medians over rounds in which all rows take turns."
             ),
             "brute_force looks for neighbours among all fragments of a pixel, after Carnecky 2013; dual_pass is the plain k-buffer with 8 bytes a \
-             slot, without neighbours; constant is the method packed, lists of 8 bytes a fragment, which stop where no light comes through. These \
-             three are for comparison alone, but for packed no style asks for them."
+             slot, without neighbours; packed has lists of 8 bytes a fragment, which stop where no light comes through, with curvature of the surface \
+             itself, and constant the same lists without. No style asks for the first two."
                 .to_owned(),
             format!(
                 "Counts follow from the squares: comparisons of two fragments, moves of both sorts, and atomics, each for one pixel. Where nothing is \
