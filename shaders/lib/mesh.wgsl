@@ -13,7 +13,7 @@ struct MeshVertex {
     color: u32,
     // Which part of its run.
     part: u32,
-    // Sum of the principal curvatures, negative where convex, over units of the shape; 0 unless a style asks.
+    // Sum of the principal curvatures, negative where convex, over the shape's radius; 0 unless a style asks.
     kappa: f32,
 }
 

@@ -77,10 +77,9 @@ fn mesh_point(ray: Ray, index: u32) -> MeshPoint {
         point.at = vec2<f32>(share_b, share_c);
         point.creases = corners.creases;
         let of_shape = va.kappa + share_b * (vb.kappa - va.kappa) + share_c * (vc.kappa - va.kappa);
-        let volume = abs(dot(part.row_x.xyz, cross(part.row_y.xyz, part.row_z.xyz)));
         // A triangle whose normals are equal is flat, whatever its neighbours are.
         let is_flat = va.normal == vb.normal && va.normal == vc.normal;
-        point.kappa = select(sign(turned) * of_shape / max(pow(volume, 1.0 / 3.0), 1e-30), 0.0, is_flat);
+        point.kappa = select(sign(turned) * of_shape / max(part.radius, 1e-30), 0.0, is_flat);
     }
     point.base_color = unpack_linear(part.color);
     if (part.color.y & 0x10000u) != 0u {

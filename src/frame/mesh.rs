@@ -29,7 +29,7 @@ gpu_struct! {
         pub color: u32,
         /// Which part of its run.
         pub part: u32,
-        /// Sum of the principal curvatures over units of the shape; 0 unless a style asks.
+        /// Sum of the principal curvatures over the shape's radius; 0 unless a style asks.
         pub kappa: f32,
     }
 }
@@ -371,7 +371,7 @@ impl MeshBuffers {
                     hull: shape.hulls.get(index).copied().unwrap_or(0),
                     color,
                     part,
-                    kappa: bending.map_or(0.0, |bending| bending.kappa[index]),
+                    kappa: bending.map_or(0.0, |bending| bending.kappa[index] * shape.sphere.radius),
                 }));
             }
             let mut offset = u64::from(placed.first_triangle) * 12;

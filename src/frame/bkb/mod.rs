@@ -139,10 +139,15 @@ impl BkbPlan {
 
     /// Most rows that are stored at once, with at most `memory_bytes` for all buffers.
     fn most_rows(&self, gpu: &Gpu, width: u32, memory_bytes: u64) -> u32 {
-        let (row_slots, form) = (self.row_slots(width), self.key.form);
-        let in_memory = memory_bytes / (row_slots * form.slot_bytes());
-        let bound = most_bytes(gpu, u64::MAX) / (row_slots * 4 * form.data_words());
-        in_memory.min(bound).min(u64::from(u32::MAX)) as u32
+        let row_bytes = self.row_slots(width) * self.key.form.slot_bytes();
+        (self.most_bytes(gpu, memory_bytes) / row_bytes).min(u64::from(u32::MAX)) as u32
+    }
+
+    /// Most bytes of all buffers: as many as the style allows, and as the largest of them, D, can be bound with.
+    fn most_bytes(&self, gpu: &Gpu, memory_bytes: u64) -> u64 {
+        let form = self.key.form;
+        let bound = most_bytes(gpu, u64::MAX) / (4 * form.data_words()) * form.slot_bytes();
+        memory_bytes.min(bound)
     }
 
     /// Bands of a picture, and bytes of all buffers for the largest of them.
@@ -287,7 +292,7 @@ impl Bkb {
                 what: "layers of three rows, which transparency.memory_mb limits, too,",
                 count: (3 * row_slots) as usize,
                 bytes: 3 * row_slots * plan.key.form.slot_bytes(),
-                limit: memory_bytes,
+                limit: plan.most_bytes(gpu, memory_bytes),
             });
         }
         let rows = band_rows(size[1], most_rows);

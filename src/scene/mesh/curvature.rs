@@ -24,7 +24,7 @@ pub struct Bending {
 }
 
 impl Bending {
-    /// The bending of a shape. Cost: about 0.2 microseconds a triangle.
+    /// The bending of a shape.
     pub fn new(shape: &Shape) -> Bending {
         Bending { kappa: vertex_kappa(shape), creases: creases(shape) }
     }
