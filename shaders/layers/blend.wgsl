@@ -1,5 +1,6 @@
 // The layers of a pixel over what is opaque there: its list is sorted from near to far, equal depths by their ids, and each fragment is
 // shaded from its id and blended until next to no light comes through. Nothing but the surfaces that count is ever shaded.
+// SORTED: lists are in order already, since fragments ask those of other pixels.
 
 @group(2) @binding(0) var<uniform> layers: LayerBand;
 @group(2) @binding(1) var<storage, read_write> layer_counts: array<u32>;
@@ -10,44 +11,6 @@
 
 // Light that still comes through where blending ends: a quarter of a step of 10 bits.
 const LEAST_LIGHT: f32 = 1.0 / 4096.0;
-
-fn is_before(a: vec2<u32>, b: vec2<u32>) -> bool {
-    // Depths are positive: their bits are in their order.
-    return a.x < b.x || (a.x == b.x && a.y < b.y);
-}
-
-// Sorts by insertion at falling distances [Shell1959, throughout] [Ciura2001, throughout]: in place, quick for few and for many.
-fn sort_layers(start: u32, count: u32) {
-    var gap = 1u;
-    if count > 4u { gap = 4u; }
-    if count > 10u { gap = 10u; }
-    if count > 23u { gap = 23u; }
-    if count > 57u { gap = 57u; }
-    if count > 132u { gap = 132u; }
-    if count > 301u { gap = 301u; }
-    loop {
-        for (var i = gap; i < count; i++) {
-            let moved = layer_pool[start + i];
-            var j = i;
-            while j >= gap {
-                let other = layer_pool[start + j - gap];
-                if !is_before(moved, other) { break; }
-                layer_pool[start + j] = other;
-                j -= gap;
-            }
-            layer_pool[start + j] = moved;
-        }
-        if gap <= 1u { break; }
-        switch gap {
-            case 301u: { gap = 132u; }
-            case 132u: { gap = 57u; }
-            case 57u: { gap = 23u; }
-            case 23u: { gap = 10u; }
-            case 10u: { gap = 4u; }
-            default: { gap = 1u; }
-        }
-    }
-}
 
 struct Blended {
     // Premultiplied linear light of one sample.
@@ -66,13 +29,14 @@ fn blended(position_px: vec2<f32>) -> Blended {
     let start = layer_starts[pixel];
     // The pool is too small: it grows, and all is drawn again.
     if !fits(layers, start, count) { return result; }
-    sort_layers(start, count);
+    if !SORTED { sort_layers(start, count); }
     let ray = ray_at(view, position_px);
     var light = vec3<f32>(0.0);
     var open = 1.0;
     for (var index = 0u; index < count; index++) {
         let id = layer_pool[start + index].y;
-        let s = surface_at(ray, id);
+        var s = surface_at(ray, id);
+        if SORTED { s.kappa_of_screen = kappa_of_screen(s, position_px); }
         let material = material_of(id);
         let drawn = shade_layer(s, material);
         light += open * drawn.a * drawn.rgb;

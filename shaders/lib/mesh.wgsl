@@ -1,6 +1,7 @@
 // Triangles of meshes. Shapes lie once in the textures of vertices and triangles; parts place them; a run is what one
 // instance of a draw covers: one part of a shared shape, or a row of parts whose shapes follow each other.
-// The index of an id is counted through all runs, each from a multiple of MESH_PAGE: `mesh_pages` says whose it is.
+// The index of an id counts the triangles of shapes with one place as they lie, then those of each run of a shared shape, from a
+// multiple of MESH_PAGE: `mesh_pages` says whose it is.
 
 struct MeshVertex {
     // In the shape's coordinates.
@@ -75,12 +76,13 @@ struct MeshCorners {
 fn mesh_corners(index: u32) -> MeshCorners {
     let page = index >> MESH_PAGE_BITS;
     let run = mesh_run_at(object_texel(mesh_pages, page >> 2u)[page & 3u]);
-    let triangle = object_texel(mesh_triangles, run.first_triangle + index - run.first_id);
-    return MeshCorners(triangle.xyz, run.first_part + (triangle.w & MESH_PART_MASK), triangle.w >> MESH_CREASE_SHIFT);
+    return mesh_corners_at(run.first_triangle + index - run.first_id, run.first_part);
 }
 
-fn mesh_material(index: u32) -> u32 {
-    return object_texel(mesh_parts, 4u * mesh_corners(index).part + 3u).z & 0xffffu;
+// The same of the place of a triangle, whose part is counted from the first of its run.
+fn mesh_corners_at(place: u32, first_part: u32) -> MeshCorners {
+    let triangle = object_texel(mesh_triangles, place);
+    return MeshCorners(triangle.xyz, first_part + (triangle.w & MESH_PART_MASK), triangle.w >> MESH_CREASE_SHIFT);
 }
 
 fn mesh_to_world(part: MeshPart, position: vec3<f32>) -> vec3<f32> {

@@ -1,4 +1,31 @@
 // A point of a triangle as a ray meets it, for shading: see lib/mesh.wgsl for where triangles lie.
+//
+// Of all meshes that are drawn: SHARED says whether a shape has more places than one, PLACED whether a part is placed by a matrix,
+// COLORED whether colours of vertices count. What none needs is never read.
+
+fn drawn_corners(index: u32) -> MeshCorners {
+    if SHARED { return mesh_corners(index); }
+    return mesh_corners_at(index, 0u);
+}
+
+fn mesh_part_of(index: u32) -> u32 {
+    return drawn_corners(index).part;
+}
+
+fn mesh_material(index: u32) -> u32 {
+    return object_texel(mesh_parts, 4u * drawn_corners(index).part + 3u).z & 0xffffu;
+}
+
+fn placed_point(part: MeshPart, position: vec3<f32>) -> vec3<f32> {
+    if PLACED { return mesh_to_world(part, position); }
+    return position;
+}
+
+fn placed_normal(part: MeshPart, packed: u32) -> vec3<f32> {
+    let normal = unpack_normal(packed);
+    if PLACED { return normalize(mesh_normal_to_world(part, normal)); }
+    return normal;
+}
 
 // A point of a triangle, in view space.
 struct MeshPoint {
@@ -25,14 +52,14 @@ struct MeshPoint {
 // The triangle that the index of an id names, where a ray meets it. On its border and on edges seen from the side the ray
 // may round to a miss: the nearest point of the triangle is then within rounding of the surface.
 fn mesh_point(ray: Ray, index: u32) -> MeshPoint {
-    let corners = mesh_corners(index);
+    let corners = drawn_corners(index);
     let part = mesh_part_at(corners.part);
     let va = mesh_vertex_at(corners.vertices.x);
     let vb = mesh_vertex_at(corners.vertices.y);
     let vc = mesh_vertex_at(corners.vertices.z);
-    let a = to_view(view, mesh_to_world(part, va.position));
-    let along_b = to_view(view, mesh_to_world(part, vb.position)) - a;
-    let along_c = to_view(view, mesh_to_world(part, vc.position)) - a;
+    let a = to_view(view, placed_point(part, va.position));
+    let along_b = to_view(view, placed_point(part, vb.position)) - a;
+    let along_c = to_view(view, placed_point(part, vc.position)) - a;
     // In units of the longer edge, so that squares of squares neither vanish nor overflow.
     let scale = 1.0 / max(max(length(along_b), length(along_c)), 1e-30);
     let b = along_b * scale;
@@ -54,9 +81,9 @@ fn mesh_point(ray: Ray, index: u32) -> MeshPoint {
     point.part = corners.part;
     point.t = -(a.z + share_b * along_b.z + share_c * along_c.z);
     let to_view_normal = mat3x3<f32>(view.view_from_world[0].xyz, view.view_from_world[1].xyz, view.view_from_world[2].xyz);
-    let na = to_view_normal * normalize(mesh_normal_to_world(part, unpack_normal(va.normal)));
-    let nb = to_view_normal * normalize(mesh_normal_to_world(part, unpack_normal(vb.normal)));
-    let nc = to_view_normal * normalize(mesh_normal_to_world(part, unpack_normal(vc.normal)));
+    let na = to_view_normal * placed_normal(part, va.normal);
+    let nb = to_view_normal * placed_normal(part, vb.normal);
+    let nc = to_view_normal * placed_normal(part, vc.normal);
     let mixed = na + share_b * (nb - na) + share_c * (nc - na);
     let inverse_length = inverseSqrt(max(dot(mixed, mixed), 1e-12));
     // To the side of the triangle that is seen.
@@ -82,7 +109,7 @@ fn mesh_point(ray: Ray, index: u32) -> MeshPoint {
         point.kappa = select(sign(turned) * of_shape / max(part.radius, 1e-30), 0.0, is_flat);
     }
     point.base_color = unpack_linear(part.color);
-    if (part.color.y & 0x10000u) != 0u {
+    if COLORED && (part.color.y & 0x10000u) != 0u {
         let ca = unpack_vertex_color(va.color);
         point.base_color *= ca + share_b * (unpack_vertex_color(vb.color) - ca)
             + share_c * (unpack_vertex_color(vc.color) - ca);

@@ -13,6 +13,10 @@ fn mesh_point(ray: Ray, index: u32) -> MeshPoint {
     return MeshPoint(0.0, 0u, vec3<f32>(0.0), vec3<f32>(0.0), vec3<f32>(0.0), 0.0);
 }
 
+fn mesh_part_of(index: u32) -> u32 {
+    return 0u;
+}
+
 fn mesh_normal_step(point: MeshPoint, step: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(0.0);
 }

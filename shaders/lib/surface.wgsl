@@ -27,6 +27,8 @@ struct Surface {
     id: u32,
     // Sum of the principal curvatures as it is seen, negative where convex, over scene units. With CURVATURE alone, as what follows.
     kappa: f32,
+    // The same from what neighbouring pixels see, where it is asked for.
+    kappa_of_screen: f32,
     // How far the nearest silhouette or crease is in the picture, in samples' footprints.
     rim_steps: f32,
 }

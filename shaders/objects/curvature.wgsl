@@ -23,7 +23,8 @@ struct CurvatureMaterial {
     opacity: f32,
     // First texel of its transfer functions.
     table: u32,
-    _pad0: u32,
+    // 1 where curvature is found from neighbouring pixels, 0 where it is the surface's own.
+    from_screen: u32,
     _pad1: u32,
     _pad2: u32,
 }
@@ -43,13 +44,13 @@ const FORESHORTENING: f32 = 0.4;
 const LEAST_FACING: f32 = 0.05;
 
 // Curvature as the picture has it [Vergne2009 §3]: of the normal's two coordinates in the picture over a power of the third.
-fn curvature_of_picture(s: Surface) -> f32 {
+fn curvature_of_picture(s: Surface, kappa: f32) -> f32 {
     let facing = max(dot(s.normal_view, s.to_viewer), LEAST_FACING);
     let across = s.normal_view - facing * s.to_viewer;
     // Change of the cosine over a scene unit across the line of sight.
     let step = vec2<f32>(1.0, -1.0) * facing_step(s) / max(view.footprint_px * pixel_world_at(s), 1e-30);
     let turn = dot(across.xy, step);
-    return (s.kappa + FORESHORTENING * turn / facing) / pow(facing, FORESHORTENING);
+    return (kappa + FORESHORTENING * turn / facing) / pow(facing, FORESHORTENING);
 }
 
 fn pixel_world_at(s: Surface) -> f32 {
@@ -65,7 +66,8 @@ fn curvature_depth(m: CurvatureMaterial, t: f32) -> f32 {
 
 fn curvature_bend(s: Surface, m: CurvatureMaterial) -> Bend {
     var kappa = s.kappa;
-    if CURVATURE_EMPHASIS && m.emphasis > 0.0 { kappa = mix(kappa, curvature_of_picture(s), m.emphasis); }
+    if CURVATURE_SCREEN && m.from_screen != 0u { kappa = s.kappa_of_screen; }
+    if CURVATURE_EMPHASIS && m.emphasis > 0.0 { kappa = mix(kappa, curvature_of_picture(s, kappa), m.emphasis); }
     let signed = tanh(clamp(m.gain * kappa, -20.0, 20.0));
     let width_px = m.contour_px + m.contour_world / pixel_world_at(s);
     let rim = select(0.0, clamp(width_px / view.footprint_px - s.rim_steps + 0.5, 0.0, 1.0), width_px > 0.0);

@@ -323,10 +323,9 @@ impl Engine {
 
     /// How far what a pixel sees changes others, in pixels.
     fn reach_px(&mut self, request: &Request) -> Result<u32, GpuError> {
-        self.with_input(request, |_, input| {
-            // Curvature is found between neighbours.
-            let of_layers = u32::from(input.layer_method != LayerMethod::Packed);
-            Ok(of_layers + input.effects.iter().map(|effect| effect.reach_px).sum::<u32>())
+        self.with_input(request, |renderer, input| {
+            Ok(renderer.layers_reach_px(input.layer_method)
+                + input.effects.iter().map(|effect| effect.reach_px).sum::<u32>())
         })
     }
 

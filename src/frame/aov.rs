@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
+use super::fullscreen;
+use super::mesh::{self, MeshForm};
 use super::visibility::{SceneBindings, Visibility};
-use super::{fullscreen, mesh};
 use crate::gpu::{Gpu, GpuError, Module};
 use crate::wgsl;
 
@@ -79,7 +80,7 @@ pub fn aov_module(orthographic: bool, meshes: bool) -> Module {
         wgsl!("lib/intersect.wgsl"),
         wgsl!("lib/surface.wgsl"),
     ]);
-    mesh::point_files(meshes).iter().for_each(|file| module.add(*file));
+    mesh::add_point(&mut module, meshes.then_some(MeshForm::ANY));
     module.add_generated(
         "aov options",
         format!(

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::mesh::MeshForm;
 use super::objects::{self, Connector, DrawList, Material, ObjectBuffers};
 use super::occlusion::Reach;
 use super::shade::{ShadeKey, ShaderNeeds};
@@ -63,6 +64,8 @@ impl Materials {
 #[derive(Debug, Clone, Copy, Default)]
 struct ObjectNeeds {
     kinds: DrawnKinds,
+    /// What is known of the meshes that are drawn.
+    mesh_form: Option<MeshForm>,
     /// The one material of all atoms, where there is only one.
     atom_material: Option<u32>,
     /// The same of connectors.
@@ -83,6 +86,11 @@ impl ObjectNeeds {
                 connectors: !list.connectors.is_empty(),
                 meshes: list.drawn_parts().next().is_some(),
             },
+            mesh_form: list
+                .meshes
+                .as_ref()
+                .filter(|_| list.drawn_parts().next().is_some())
+                .map(|scene| MeshForm::new(&scene.assembly, list.drawn_parts())),
             atom_material: common(list.atoms.iter().map(|atom| atom.material)),
             connector_material: common(list.connectors.iter().map(Connector::material)),
             part_material: common(list.drawn_parts().map(|part| part.material())),
@@ -122,7 +130,7 @@ impl Needs {
             shaders: shaders.collect(),
             atoms: objects.kinds.atoms,
             connectors: objects.kinds.connectors,
-            meshes: objects.kinds.meshes,
+            meshes: objects.mesh_form,
             atom_material: objects.atom_material,
             connector_material: objects.connector_material,
             part_material: objects.part_material,

@@ -150,8 +150,19 @@ fn list_steps(layers: &LayersPlan, size: [u32; 2]) -> Vec<Step> {
         ),
         Step::drawn("layers_room", size, 0, "each pixel's list gets its place in the pool"),
         Step::drawn("layers_written", size, 0, "8 bytes for each fragment, in a pool of as many as there are"),
-        Step::drawn("layers_blended", size, 0, "each list is sorted, shaded and blended until no light comes through"),
     ];
+    let sorted = layers.halo > 0;
+    if sorted {
+        steps.push(Step::drawn(
+            "layers_sorted",
+            size,
+            0,
+            "curvature is found from neighbouring pixels, whose lists must be in order",
+        ));
+    }
+    let blended = if sorted { "shaded" } else { "sorted, shaded" };
+    let reason = format!("each list is {blended} and blended until no light comes through");
+    steps.push(Step::drawn("layers_blended", size, 0, reason));
     if layers.leaves_surfaces() {
         let reason = "a post effect follows, which sees the nearest surface";
         steps.push(Step::drawn("layers_nearest", size, 0, reason));

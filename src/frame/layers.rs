@@ -25,6 +25,8 @@ const SLACK: f64 = 1.25;
 /// Pixels of one invocation that gives room, and invocations of a group: see `shaders/layers/room.wgsl`.
 const ROOM_RUN: u32 = 32;
 const ROOM_GROUP: u32 = 64;
+/// Side of the square of pixels whose lists a group sorts: see `shaders/layers/sort.wgsl`.
+const SORT_SIDE: u32 = 8;
 
 gpu_struct! {
     "lib/layers.wgsl",
@@ -46,6 +48,8 @@ gpu_struct! {
 pub struct LayersPlan {
     /// The shading of blended fragments.
     pub shade: ShadeKey,
+    /// Rows and columns around each pixel whose fragments its own ask for.
+    pub halo: u32,
     /// Counting.
     pub count: VisibilityKey,
     /// Writing.
@@ -77,8 +81,11 @@ pub struct LayerTargets<'a> {
 /// Some rows of the picture, with what their passes bind.
 struct Band {
     rows: std::ops::Range<u32>,
+    /// These and the halo.
+    held: std::ops::Range<u32>,
     raster: wgpu::BindGroup,
     room: wgpu::BindGroup,
+    sort: wgpu::BindGroup,
     blend: wgpu::BindGroup,
 }
 
@@ -87,6 +94,7 @@ struct BandSlot {
     params: Option<KeptBuffer>,
     raster: KeptBindGroup,
     room: KeptBindGroup,
+    sort: KeptBindGroup,
     blend: KeptBindGroup,
 }
 
@@ -102,6 +110,9 @@ pub struct Layers {
     /// Fragments that the pool holds.
     capacity: u64,
     num_bands: u32,
+    /// Rows that a band holds beyond each of its ends.
+    halo: u32,
+    sort: Option<wgpu::ComputePipeline>,
     room: Option<(wgpu::BindGroupLayout, wgpu::ComputePipeline)>,
     nearest: Option<wgpu::RenderPipeline>,
     slots: Vec<BandSlot>,
@@ -167,6 +178,7 @@ impl LayersPlan {
             ShadeKey { layers: Some((finish, surfaces)), hulls: false, encode: false, geometry: true, ..shade.clone() };
         let raster = |drawn| VisibilityKey { drawn, hulls: false, ..seen };
         LayersPlan {
+            halo: u32::from(shade.asks_neighbours()),
             shade,
             count: raster(Drawn::CountedLayers),
             write: raster(Drawn::WrittenLayers),
@@ -212,25 +224,29 @@ impl Layers {
             let pipeline = gpu.compute_pipeline("room of layers", &room_module(), "make_room", &[Some(&layout)])?;
             self.room = Some((layout, pipeline));
         }
+        if let Some((layout, _)) = self.room.as_ref().filter(|_| plan.halo > 0 && self.sort.is_none()) {
+            self.sort = Some(gpu.compute_pipeline("sorted layers", &sort_module(), "sort_lists", &[Some(layout)])?);
+        }
         Ok(())
     }
 
     /// Forgets the pipeline, so that it is built anew.
     pub fn forget_pipelines(&mut self) {
-        (self.room, self.nearest) = (None, None);
+        (self.room, self.sort, self.nearest) = (None, None, None);
     }
 
     /// Makes the buffers fit a picture, with at most `limit` bytes for each.
     ///
     /// # Errors
     /// [`GpuError::TooMany`] where a row of the picture alone outgrows a binding.
-    fn fit(&mut self, gpu: &Gpu, size: [u32; 2], limit: u64, samples: u32) -> Result<(), GpuError> {
+    fn fit(&mut self, gpu: &Gpu, size: [u32; 2], limit: u64, samples: u32, halo: u32) -> Result<(), GpuError> {
         let most = limit / FRAGMENT_BYTES;
         let pixels = u64::from(size[0]) * u64::from(size[1]);
-        if self.size != size || self.num_bands == 0 {
+        if self.size != size || self.halo != halo || self.num_bands == 0 {
             // Counts of a band must fit a binding, too.
-            self.num_bands = (pixels * 4).div_ceil(limit.max(1)).max(1) as u32;
-            self.size = size;
+            let halo_bytes = u64::from(2 * halo) * u64::from(size[0]) * 4;
+            self.num_bands = (pixels * 4).div_ceil(limit.saturating_sub(halo_bytes).max(1)).max(1) as u32;
+            (self.size, self.halo) = (size, halo);
             self.capacity = self.capacity.max((pixels / u64::from(self.num_bands)) * FIRST_LAYERS).min(most);
             self.pool = None;
             (self.counts, self.starts) = (None, None);
@@ -244,7 +260,7 @@ impl Layers {
                 limit,
             });
         }
-        let rows = size[1].div_ceil(self.num_bands);
+        let rows = (size[1].div_ceil(self.num_bands) + 2 * halo).min(size[1]);
         let band_bytes = u64::from(rows) * u64::from(size[0]) * 4;
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
         let fit = |buffer: &mut Option<wgpu::Buffer>, label, bytes: u64| {
@@ -293,10 +309,11 @@ impl Layers {
             if rows.is_empty() {
                 continue;
             }
+            let held = rows.start.saturating_sub(self.halo)..(rows.end + self.halo).min(self.size[1]);
             let band = LayerBand {
                 width: self.size[0],
-                first_pixel: rows.start * self.size[0],
-                num_pixels: (rows.end - rows.start) * self.size[0],
+                first_pixel: held.start * self.size[0],
+                num_pixels: (held.end - held.start) * self.size[0],
                 capacity: self.capacity as u32,
             };
             let params = slot.params.get_or_insert_with(|| KeptBuffer::uniform("layers"));
@@ -314,6 +331,8 @@ impl Layers {
             let view = |binding, view: &wgpu::TextureView| (binding, Bound::View(view.clone()));
             bands.push(Band {
                 rows,
+                held,
+                sort: slot.sort.get(gpu, "sorted layers", room_layout, stored(vec![pool()])),
                 raster: slot.raster.get(
                     gpu,
                     "layers",
@@ -341,8 +360,15 @@ impl Layers {
     ///
     /// # Errors
     /// As [`Layers::prepare`], and [`GpuError::TooMany`] where nothing helps.
-    pub fn begin(&mut self, gpu: &Gpu, size: [u32; 2], memory_bytes: u64, samples: u32) -> Result<(), GpuError> {
-        self.fit(gpu, size, most_bytes(gpu, memory_bytes), samples)
+    pub fn begin(
+        &mut self,
+        gpu: &Gpu,
+        size: [u32; 2],
+        memory_bytes: u64,
+        samples: u32,
+        plan: &LayersPlan,
+    ) -> Result<(), GpuError> {
+        self.fit(gpu, size, most_bytes(gpu, memory_bytes), samples, plan.halo)
     }
 
     /// Draws the layers of one sample.
@@ -377,9 +403,9 @@ impl Layers {
             encoder.clear_buffer(counts, 0, None);
             encoder.clear_buffer(total, 0, None);
             let raster = |name, key| VisibilityPass { name, key, ..*pass };
-            let rows = band.rows.clone();
+            let (rows, held) = (band.rows.clone(), band.held.clone());
             let counted = raster("layers_counted", plan.count);
-            visibility.draw_layers(encoder, scene, objects, &counted, &band.raster, rows.clone(), timer);
+            visibility.draw_layers(encoder, scene, objects, &counted, &band.raster, held.clone(), timer);
             {
                 let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                     label: Some("room of layers"),
@@ -387,17 +413,30 @@ impl Layers {
                 });
                 pass.set_pipeline(room);
                 pass.set_bind_group(0, &band.room, &[]);
-                let pixels = (rows.end - rows.start) * self.size[0];
+                let pixels = (held.end - held.start) * self.size[0];
                 pass.dispatch_workgroups(pixels.div_ceil(ROOM_RUN * ROOM_GROUP), 1, 1);
             }
             encoder.copy_buffer_to_buffer(total, 0, readable, self.num_totals * TOTAL_BYTES, Some(TOTAL_BYTES));
             self.num_totals += 1;
             let written = raster("layers_written", plan.write);
-            visibility.draw_layers(encoder, scene, objects, &written, &band.raster, rows.clone(), timer);
+            visibility.draw_layers(encoder, scene, objects, &written, &band.raster, held.clone(), timer);
+            if let Some(sort) = self.sort.as_ref().filter(|_| plan.halo > 0) {
+                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                    label: Some("sorted layers"),
+                    timestamp_writes: timer.as_mut().and_then(|timer| timer.compute_pass("layers_sorted")),
+                });
+                pass.set_pipeline(sort);
+                pass.set_bind_group(0, &band.sort, &[]);
+                pass.dispatch_workgroups(
+                    self.size[0].div_ceil(SORT_SIDE),
+                    (held.end - held.start).div_ceil(SORT_SIDE),
+                    1,
+                );
+            }
             if let Some(all) = self.all_counts.as_ref().filter(|_| plan.for_aovs) {
-                let [start, length] =
-                    [rows.start, rows.end - rows.start].map(|rows| u64::from(rows * self.size[0]) * 4);
-                encoder.copy_buffer_to_buffer(counts, 0, all, start, Some(length));
+                let [from, start, length] = [rows.start - held.start, rows.start, rows.end - rows.start]
+                    .map(|rows| u64::from(rows * self.size[0]) * 4);
+                encoder.copy_buffer_to_buffer(counts, from, all, start, Some(length));
             }
             let clears = to.clears && index == 0;
             let groups = [&scene.group, shade_group, &band.blend];
@@ -480,6 +519,11 @@ impl Layers {
 /// The WGSL of nearest ids.
 pub fn nearest_module() -> Module {
     Module::new(&[wgsl!("lib/layers.wgsl"), wgsl!("layers/nearest.wgsl")])
+}
+
+/// The WGSL that puts all lists in order.
+pub fn sort_module() -> Module {
+    Module::new(&[wgsl!("lib/layers.wgsl"), wgsl!("lib/sort_layers.wgsl"), wgsl!("layers/sort.wgsl")])
 }
 
 /// The WGSL that gives lists their room.

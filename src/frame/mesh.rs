@@ -11,7 +11,7 @@ use glam::Affine3A;
 
 use super::objects::PICKS_SHIFT;
 use super::texels::{self, KeptTexture, OBJECT_ROW};
-use crate::gpu::{Gpu, GpuError, Wgsl};
+use crate::gpu::{Gpu, GpuError, Module};
 use crate::scene::{Assembly, Scene, Shape};
 use crate::{gpu_struct, wgsl};
 
@@ -200,25 +200,18 @@ impl Draws {
     /// [`GpuError::TooMany`] beyond the ids of 29 bits.
     fn new(layout: &Layout, assembly: &Assembly, is_drawn: impl Fn(u32) -> bool) -> Result<Draws, GpuError> {
         let mut draws = Draws::default();
-        let mut next_id = 0u64;
-        let mut run = |draws: &mut Draws, first_triangle: u32, num_triangles: u32, first_part: u32| {
-            let row = draws.runs.len() as u32;
-            let first_id = next_id as u32;
-            next_id += u64::from(num_triangles).next_multiple_of(PAGE);
-            if next_id > MOST_IDS {
-                let bytes = |count: u64| count * size_of::<[u32; 4]>() as u64;
-                return Err(GpuError::TooMany {
-                    what: "triangles",
-                    count: next_id as usize,
-                    bytes: bytes(next_id),
-                    limit: bytes(MOST_IDS),
-                });
-            }
-            draws.pages.resize((next_id / PAGE) as usize, row);
-            draws.runs.push(MeshRun { first_id, first_triangle, first_part, _pad0: 0 });
+        let single_triangles: u64 =
+            layout.shapes[..layout.num_single].iter().map(|placed| u64::from(placed.num_triangles)).sum();
+        // Ids of shapes with one place are those of their triangles, drawn or not: their page names the first run, which as
+        // any other of them starts where its ids do, with the first part.
+        let mut next_id = single_triangles.next_multiple_of(PAGE);
+        draws.pages.resize((next_id / PAGE) as usize, 0);
+        fn run(draws: &mut Draws, num_triangles: u32, run: MeshRun) -> u32 {
+            draws.runs.push(run);
             draws.num_triangles += u64::from(num_triangles);
-            Ok(row)
-        };
+            draws.runs.len() as u32 - 1
+        }
+        check_ids(next_id)?;
         let indices = |first_triangle: u32, count: u32| 3 * first_triangle..3 * (first_triangle + count);
 
         // Shapes with one place: as few draws as hidden parts between them allow.
@@ -235,7 +228,9 @@ impl Draws {
             }
             let count = last.first_triangle + last.num_triangles - first.first_triangle;
             // Vertices count their parts from the first of all.
-            let row = run(&mut draws, first.first_triangle, count, 0)?;
+            let first_triangle = first.first_triangle;
+            let row =
+                run(&mut draws, count, MeshRun { first_id: first_triangle, first_triangle, first_part: 0, _pad0: 0 });
             draws.draws.push(MeshDraw {
                 indices: indices(first.first_triangle, count),
                 runs: row..row + 1,
@@ -247,7 +242,12 @@ impl Draws {
                 let start = draws.runs.len() as u32;
                 for part in placed.parts.clone() {
                     if is_drawn(layout.parts[part as usize]) && mirrored(part) == side {
-                        run(&mut draws, placed.first_triangle, placed.num_triangles, part)?;
+                        let (first_id, first_triangle) = (next_id as u32, placed.first_triangle);
+                        next_id += u64::from(placed.num_triangles).next_multiple_of(PAGE);
+                        check_ids(next_id)?;
+                        let first = MeshRun { first_id, first_triangle, first_part: part, _pad0: 0 };
+                        let row = run(&mut draws, placed.num_triangles, first);
+                        draws.pages.resize((next_id / PAGE) as usize, row);
                     }
                 }
                 let end = draws.runs.len() as u32;
@@ -262,6 +262,16 @@ impl Draws {
         }
         Ok(draws)
     }
+}
+
+/// Refuses more ids than there are.
+fn check_ids(num_ids: u64) -> Result<(), GpuError> {
+    let bytes = |count: u64| count * size_of::<[u32; 4]>() as u64;
+    if num_ids > MOST_IDS {
+        let (count, bytes, limit) = (num_ids as usize, bytes(num_ids), bytes(MOST_IDS));
+        return Err(GpuError::TooMany { what: "triangles", count, bytes, limit });
+    }
+    Ok(())
 }
 
 fn is_mirrored(assembly: &Assembly, part: u32) -> bool {
@@ -422,11 +432,45 @@ impl MeshBuffers {
     }
 }
 
-/// The WGSL of points of meshes, or what stands in for it where there are none.
-pub fn point_files(meshes: bool) -> &'static [Wgsl] {
-    const FILES: [Wgsl; 2] = [wgsl!("lib/mesh.wgsl"), wgsl!("lib/mesh_point.wgsl")];
-    const NONE: [Wgsl; 1] = [wgsl!("lib/mesh_point_none.wgsl")];
-    if meshes { &FILES } else { &NONE }
+/// What shading need not ask of each triangle, since it holds for all of a scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct MeshForm {
+    /// Whether a shape has more places than one: ids are those of triangles otherwise.
+    pub shared: bool,
+    /// Whether a part is placed by a matrix: shapes lie in world coordinates otherwise.
+    pub placed: bool,
+    /// Whether the colours of vertices count anywhere.
+    pub colored: bool,
+}
+
+impl MeshForm {
+    /// What is right for all meshes.
+    pub const ANY: MeshForm = MeshForm { shared: true, placed: true, colored: true };
+
+    /// The form of the parts of an assembly, hidden ones with them, in the looks that those have that are drawn.
+    pub fn new<'a>(assembly: &Assembly, drawn: impl Iterator<Item = &'a MeshPart>) -> MeshForm {
+        let mut places = vec![0u32; assembly.shapes.len()];
+        assembly.parts.iter().for_each(|part| places[part.shape as usize] += 1);
+        MeshForm {
+            shared: places.iter().any(|&places| places > 1),
+            placed: assembly.parts.iter().any(|part| part.world_from_shape != Affine3A::IDENTITY),
+            colored: { drawn }.any(MeshPart::has_vertex_colors),
+        }
+    }
+}
+
+/// Adds the WGSL of points of meshes, or what stands in for it where there are none.
+pub fn add_point(module: &mut Module, form: Option<MeshForm>) {
+    let Some(MeshForm { shared, placed, colored }) = form else {
+        module.add(wgsl!("lib/mesh_point_none.wgsl"));
+        return;
+    };
+    module.add(wgsl!("lib/mesh.wgsl"));
+    module.add_generated(
+        "mesh form",
+        format!("const SHARED: bool = {shared};\nconst PLACED: bool = {placed};\nconst COLORED: bool = {colored};"),
+    );
+    module.add(wgsl!("lib/mesh_point.wgsl"));
 }
 
 /// Refuses meshes that do not fit the device.

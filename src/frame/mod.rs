@@ -432,7 +432,9 @@ impl Renderer {
         self.fit_shadows(&plan);
         let view = input.view();
         match plan.lists() {
-            Some(_) => self.layers.begin(&gpu, input.drawn_size(), input.layer_bytes, plan.samples)?,
+            Some(layers) => {
+                self.layers.begin(&gpu, input.drawn_size(), input.layer_bytes, plan.samples, layers)?;
+            }
             None => self.layers = Layers::default(),
         }
         match &plan.bkb {
@@ -691,6 +693,12 @@ impl Renderer {
     /// Milliseconds of each pass of the last timed frame; empty where the adapter has no timestamps.
     pub fn pass_times(&self) -> &PassTimes {
         &self.last_times
+    }
+
+    /// How far what is transparent in a pixel changes others, in pixels.
+    pub fn layers_reach_px(&self, method: LayerMethod) -> u32 {
+        let needs = self.contents.needs();
+        u32::from(needs.layered && (method != LayerMethod::Packed || needs.key.asks_neighbours()))
     }
 
     /// Triangles of meshes that are drawn.

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 
 use super::layers::{self, LayerTargets};
 use super::lights::Lights;
-use super::mesh;
+use super::mesh::{self, MeshForm};
 use super::post::{self, Finish};
 use super::shadow::{ShadowFilter, ShadowMaps, Shadows};
 use super::texels::KeptTexture;
@@ -35,8 +35,8 @@ pub struct ShadeKey {
     pub atoms: bool,
     /// Whether there are connectors.
     pub connectors: bool,
-    /// Whether there are triangles of meshes.
-    pub meshes: bool,
+    /// What is known of triangles of meshes, where there are any.
+    pub meshes: Option<MeshForm>,
     /// The one material of all atoms, where there is only one.
     pub atom_material: Option<u32>,
     /// The one material of all connectors, where there is only one.
@@ -75,6 +75,13 @@ pub struct ShaderNeeds {
     pub features: u32,
     /// The material that alone uses it, where only one does.
     pub only_material: Option<u32>,
+}
+
+impl ShadeKey {
+    /// Whether its layers, where it has any, are shaded by what lies beside them in neighbouring pixels.
+    pub fn asks_neighbours(&self) -> bool {
+        self.shaders.iter().any(|needs| SHADERS[needs.shader].asks_neighbours(needs.features))
+    }
 }
 
 /// First binding of the shaders' own bindings in group 1.
@@ -460,9 +467,15 @@ pub fn shade_module(key: &ShadeKey) -> Module {
     add_shading(&mut module, key);
     if let Some((finish, _)) = key.layers {
         module.add(wgsl!("lib/geometry.wgsl"));
-        module.add_generated("layers options", format!("const FINISH: u32 = {}u;", finish.number()));
+        module.add_generated(
+            "layers options",
+            format!("const FINISH: u32 = {}u;\nconst SORTED: bool = {};", finish.number(), key.asks_neighbours()),
+        );
         module.add(wgsl!("lib/finish.wgsl"));
         module.add(wgsl!("lib/layers.wgsl"));
+        module.add(wgsl!("lib/sort_layers.wgsl"));
+        let asks = key.asks_neighbours();
+        module.add(if asks { wgsl!("layers/neighbours.wgsl") } else { wgsl!("layers/neighbours_none.wgsl") });
         module.add(wgsl!("layers/blend.wgsl"));
     } else if key.geometry {
         module.add(wgsl!("lib/geometry.wgsl"));
@@ -486,7 +499,7 @@ pub fn add_shading(module: &mut Module, key: &ShadeKey) {
     ] {
         module.add(file);
     }
-    mesh::point_files(key.meshes).iter().for_each(|file| module.add(*file));
+    mesh::add_point(module, key.meshes);
     let shadow_files: &[Wgsl] = match (key.shadows, key.shadow_filter) {
         (false, _) => &[wgsl!("lib/shadow_none.wgsl")],
         (true, ShadowFilter::Objects) => &[wgsl!("lib/shadow_maps.wgsl"), wgsl!("lib/shadow.wgsl")],
@@ -500,7 +513,7 @@ pub fn add_shading(module: &mut Module, key: &ShadeKey) {
         key.encode,
         key.atoms,
         key.connectors,
-        key.meshes,
+        key.meshes.is_some(),
         key.hulls,
         key.layers.is_some() && key.shaders.iter().any(|needs| SHADERS[needs.shader].stylises()),
         key.shadows,
@@ -607,7 +620,7 @@ fn material_function(key: &ShadeKey) -> String {
     let kinds = [
         (key.atoms, "ATOM", source(key.atom_material, &format!("atom_at({index}).material"))),
         (key.connectors, "CONNECTOR", source(key.connector_material, &format!("connector_at({index}).material"))),
-        (key.meshes, "MESH", source(key.part_material, &format!("mesh_material({index})"))),
+        (key.meshes.is_some(), "MESH", source(key.part_material, &format!("mesh_material({index})"))),
     ];
     let mut kinds: Vec<(&str, String)> =
         kinds.into_iter().filter(|(drawn, ..)| *drawn).map(|(_, kind, source)| (kind, source)).collect();

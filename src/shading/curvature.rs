@@ -13,6 +13,12 @@ use crate::{gpu_struct, wgsl};
 /// Shaders that may light the surfaces.
 const SHADING: &[&str] = &["basic", "toon", "unlit"];
 
+/// Where curvature comes from.
+const SOURCES: &[&str] = &["auto", "surface", "screen"];
+
+/// The feature of curvature from neighbouring pixels.
+const OF_SCREEN: u32 = 1 << 1;
+
 /// The parameters of `curvature`.
 pub const PARAMS: &[Param] = &[
     BASE_COLOR,
@@ -27,6 +33,9 @@ pub const PARAMS: &[Param] = &[
         .range(0.0, 1000.0)
         .doc("How strongly curvature counts; at 1, nine tenths of what is curved at all count less than 0.9.")
         .examples(&["0.2", "1", "5"]),
+    Param::choice("curvature_source", SOURCES, "auto")
+        .doc("Whether curvature is that of the surface itself or found from what neighbouring pixels see; auto takes the surface's. With bkb it is always found from neighbouring pixels.")
+        .examples(&[r#""surface""#, r#""screen""#]),
     Param::numbers("depth_range", &[0.0, 1.0])
         .of_len(2)
         .ascending()
@@ -82,8 +91,8 @@ gpu_struct! {
         pub opacity: f32,
         /// First texel of its transfer functions.
         pub table: u32,
-        /// Padding.
-        pub _pad0: u32,
+        /// 1 where curvature is found from neighbouring pixels.
+        pub from_screen: u32,
         /// Padding.
         pub _pad1: u32,
         /// Padding.
@@ -101,6 +110,10 @@ pub fn texels(opacity: &Transfer, color: &Transfer) -> Vec<[f32; 4]> {
         cells.map(|(x, y)| [node(x, y), node(x + 1, y), node(x, y + 1), node(x + 1, y + 1)]).collect();
     texels.extend(color.color_nodes().iter().take(COLOR_SIZE).map(|[r, g, b]| [*r, *g, *b, 0.0]));
     texels
+}
+
+fn is_of_screen(values: &Values) -> bool {
+    values.choice("curvature_source") == "screen"
 }
 
 /// The shader's registry entry.
@@ -139,17 +152,20 @@ impl ObjectShader for Curvature {
             depth_scale: (1.0 / (end - start).max(1e-6)) as f32,
             opacity: values.number(OPACITY.name) as f32,
             table: context.table,
-            _pad0: 0,
+            from_screen: u32::from(is_of_screen(values)),
             _pad1: 0,
             _pad2: 0,
         })
         .to_vec()
     }
     fn features(&self) -> &'static [&'static str] {
-        &["CURVATURE_EMPHASIS"]
+        &["CURVATURE_EMPHASIS", "CURVATURE_SCREEN"]
     }
     fn features_used(&self, values: &Values) -> u32 {
-        u32::from(values.number("contour_emphasis") > 0.0)
+        u32::from(values.number("contour_emphasis") > 0.0) | u32::from(is_of_screen(values)) * OF_SCREEN
+    }
+    fn asks_neighbours(&self, features: u32) -> bool {
+        features & OF_SCREEN != 0
     }
     fn lit_by(&self, values: &Values) -> Option<&'static str> {
         Some(values.choice("shading"))

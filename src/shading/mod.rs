@@ -95,6 +95,10 @@ pub trait ObjectShader: Sync {
     fn stylises(&self) -> bool {
         false
     }
+    /// Whether, with these features, it asks what lies beside a fragment in neighbouring pixels.
+    fn asks_neighbours(&self, _features: u32) -> bool {
+        false
+    }
     /// Whether what it draws is blended in layers.
     fn is_layered(&self, values: &Values) -> bool {
         values.number(OPACITY.name) < 1.0

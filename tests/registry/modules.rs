@@ -8,6 +8,7 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{AddressSpace, Handle, Type, TypeInner};
 use restyle::effects::EFFECTS;
 use restyle::frame::bkb::{self, BkbForm, BkbKey, FragmentKind};
+use restyle::frame::mesh::MeshForm;
 use restyle::frame::{
     Drawn, EffectKey, Finish, ShadeKey, ShaderNeeds, ShadowFilter, VisibilityKey, aov_module, effect_module, layers,
     mesh_module, resolve_module, shade_module, visibility_module,
@@ -174,7 +175,7 @@ fn collect(parsed: &naga::Module, ty: Handle<Type>, into: &mut BTreeSet<Handle<T
 }
 
 /// How many yes-or-no questions a [`ShadeKey`] answers, beside its list of shaders.
-const NUM_SWITCHES: u32 = 18;
+const NUM_SWITCHES: u32 = 21;
 
 /// Answers, one a bit, of which at most one differs from the rest.
 fn covering_switches() -> impl Iterator<Item = u32> {
@@ -243,7 +244,7 @@ fn shade_key(shaders: u32, switches: u32, features: u32) -> ShadeKey {
         connectors: on(1),
         atom_material: on(2).then_some(0),
         connector_material: on(3).then_some(1),
-        meshes: on(13),
+        meshes: on(13).then_some(MeshForm { shared: on(18), placed: on(19), colored: on(20) }),
         part_material: on(14).then_some(2),
         hulls: on(4),
         lights: if on(5) { 8 } else { 0 },

@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use restyle::config::transfer::{COLOR_SIZE, OPACITY_SIZE, Transfer, TransferKind};
 use restyle::config::{self, Catalog, Source};
 use restyle::engine::exact::Exact;
@@ -16,7 +16,7 @@ use restyle::shipped::{LOOKS, MESHES, MOLECULES, find};
 
 use super::gpu;
 use super::surface::{Surface, surface_at};
-use super::truth::{Shape, World, center_px};
+use super::truth::{Hit, Shape, View, World, center_px};
 
 /// `opacity_transfer` of `shaders/lib/transfer.wgsl`.
 fn opacity_transfer(texels: &[[f32; 4]], curvature: f32, depth: f32) -> f32 {
@@ -75,6 +75,40 @@ fn curvature_bend(s: &Surface, kappa: f32, m: &CurvatureMaterial, middle: f32, p
     }
 }
 
+/// `kappa_of_screen` of `shaders/layers/neighbours.wgsl` for an object alone; none where no neighbour is on one of both axes.
+fn kappa_of_screen(view: &View, at: (u32, u32), shape: &Shape, hit: &Hit, s: &Surface) -> Option<f64> {
+    let px = center_px(at);
+    let scale = if view.orthographic { 1.0 } else { hit.t };
+    let mut change_of = [DVec3::ZERO; 2];
+    for (change, step, along) in [(0, DVec2::X, s.position_dx), (1, DVec2::Y, s.position_dy)] {
+        let slope = -f64::from(along.z);
+        let reach = view.pixel_view() * scale + slope.abs();
+        let beside = |side: f64| {
+            let place = px + side * step;
+            let within = place.cmpge(DVec2::ZERO).all() && place.cmple(view.size).all();
+            let ray = view.ray(place);
+            let found =
+                shape.first(ray, view.near).filter(|found| within && (found.t - hit.t - side * slope).abs() <= reach);
+            found.map(|found| if found.normal.dot(ray.direction) > 0.0 { -found.normal } else { found.normal })
+        };
+        let (before, after) = (beside(-1.0), beside(1.0));
+        let steps = f64::from(u8::from(before.is_some()) + u8::from(after.is_some()));
+        if steps == 0.0 {
+            return None;
+        }
+        let own = s.normal_view.as_dvec3();
+        // View units of a pixel at depth 1, downwards on the second axis.
+        let unit = view.pixel_view() * if step.y > 0.0 { -1.0 } else { 1.0 };
+        change_of[change] = (after.unwrap_or(own) - before.unwrap_or(own)) / (steps * unit);
+    }
+    let [dx, dy] = change_of;
+    if view.orthographic {
+        return Some(-(dx.x + dy.y));
+    }
+    let plane = view.ray(px).direction;
+    Some(-(dx.x + dy.y + plane.x * dx.z + plane.y * dy.z) / hit.t)
+}
+
 fn load(text: &str) -> config::Style {
     let catalog = Catalog { shaders: &engine::catalog(), kinds: engine::DRAWN_KINDS };
     config::load(&Source::new("test.json", text), &catalog).unwrap_or_else(|wrong| panic!("{wrong}"))
@@ -108,14 +142,20 @@ fn tables_hold_the_functions() {
 fn the_device_weighs_light_as_the_twin_does() {
     let size = [64, 64];
     for orthographic in [false, true] {
-        for (contour, emphasis, width) in [(1.0, 0.0, "3pt"), (0.4, 0.7, "30pt"), (1.0, 1.0, "0pt")] {
+        for (contour, emphasis, width, source) in [
+            (1.0, 0.0, "3pt", "surface"),
+            (0.4, 0.7, "30pt", "auto"),
+            (1.0, 1.0, "0pt", "surface"),
+            (1.0, 0.0, "0pt", "screen"),
+            (0.4, 0.3, "3pt", "screen"),
+        ] {
             let style = format!(
                 r##"{{ "camera": {{ "bgcolor": "black", "orthographic": {orthographic}, "position": [0.5, 0.3, 3] }},
                   "geometry": {{ "atom": "1A", "scale": 1, "bond_radius": "0.35A" }},
                   "mapping": {{ "*": "c" }},
                   "shaders": [{{ "name": "c", "shader": "curvature", "properties": {{ "base_color": "#e0c080", "shading": "unlit",
                     "opacity_transfer": "fig7b", "color_transfer": "warm_cool", "contour": {contour}, "contour_width": "{width}",
-                    "contour_emphasis": {emphasis}, "gain": 0.6, "depth_range": [0.1, 0.8] }} }}] }}"##
+                    "contour_emphasis": {emphasis}, "curvature_source": "{source}", "gain": 0.6, "depth_range": [0.1, 0.8] }} }}] }}"##
             );
             // One atom before the other, and beside them a bond that no atom hides.
             let Some(mut engine) = gpu::engine(&["C 0 0 0", "C 0.4 0.2 -2.5", "O 3 0 0"], &style) else { return };
@@ -143,7 +183,7 @@ fn the_device_weighs_light_as_the_twin_does() {
                 depth_scale: 1.0 / 0.7,
                 opacity: 1.0,
                 table: 0,
-                _pad0: 0,
+                from_screen: u32::from(source == "screen"),
                 _pad1: 0,
                 _pad2: 0,
             };
@@ -160,11 +200,14 @@ fn the_device_weighs_light_as_the_twin_does() {
                 let (mut light, mut open) = ([0.0f64; 3], 1.0f64);
                 for (shape, hit) in &hits {
                     let s = surface_at(&world.view, center_px(at), shape, hit, base, 1.0);
-                    let kappa = match shape {
+                    let mut kappa = match shape {
                         Shape::Sphere { radius, .. } => -2.0 / radius,
                         Shape::Cylinder { radius, .. } if !hit.cap => -1.0 / radius,
                         Shape::Cylinder { .. } => 0.0,
                     };
+                    if source == "screen" {
+                        kappa = kappa_of_screen(&world.view, at, shape, hit, &s).unwrap_or(kappa);
+                    }
                     let pixel = world.view.pixel_view() * if orthographic { 1.0 } else { hit.t };
                     let bend = curvature_bend(&s, kappa as f32, &material, middle as f32, pixel as f32);
                     let alpha = f64::from(opacity_transfer(&texels, bend.curvature, bend.depth));
@@ -181,7 +224,10 @@ fn the_device_weighs_light_as_the_twin_does() {
                 }
             }
             assert!(seen > 300, "{seen}");
-            assert!(largest < 0.004, "orthographic {orthographic}, contour {contour}, emphasis {emphasis}: {largest}");
+            assert!(
+                largest < 0.004,
+                "orthographic {orthographic}, contour {contour}, emphasis {emphasis}, {source}: {largest}"
+            );
         }
     }
 }
@@ -287,6 +333,65 @@ fn curvature_is_that_of_the_surface() {
         let (error, _) = error_of(&mut engine, [128, 128], torus_kappa);
         assert!(error < 0.002, "{camera}, inwards: {error}");
     }
+}
+
+/// Share of the curved scene's radius and its curvature that a picture of `from_screen` tells by its colour, away from silhouettes.
+const SHADES: &str = r##""base_color": "#808080", "shading": "unlit", "contour_width": "0pt", "opacity_transfer": [[0, 1], [1, 1]],
+    "color_transfer": [[-1, 0, 0, 0], [1, 2, 2, 2]]"##;
+
+#[test]
+fn curvature_of_neighbouring_pixels_is_that_of_the_surface() {
+    let Some(gpu) = gpu::device() else { return };
+    let size = [256, 256];
+    let scene = || Scene::from_bytes("ring.obj", torus().as_bytes()).expect("a ring");
+    for camera in [r#""position": [0.8, -1.2, 2.4]"#, r#""orthographic": true, "position": [0.3, 1, 2]"#] {
+        let shades = |source: &str| {
+            let style = load(&format!(
+                r##"{{ "camera": {{ {camera}, "bgcolor": "black" }}, "mapping": {{ "*": "c" }}, "shaders": [{{ "name": "c", "shader": "curvature",
+                  "properties": {{ {SHADES}, "gain": 0.4, "curvature_source": "{source}" }} }}] }}"##
+            ));
+            let mut engine = Engine::new(gpu.clone(), scene(), style);
+            let request = Request { wide: true, ..Request::new(size, 1) };
+            let image = engine.still(&request).expect("a still");
+            (gpu::channel(&image, 0), gpu::aovs(&mut engine, size))
+        };
+        let ((own, aovs), (screen, _)) = (shades("surface"), shades("screen"));
+        let light = gpu::linear_from_srgb(128.0 / 255.0);
+        // What tanh was taken of, over which the gain is the same.
+        let kappa = |shade: f64| (shade / light - 1.0).clamp(-0.999, 0.999).atanh();
+        let (mut error, mut sum, mut count) = (0.0, 0.0, 0);
+        let [width, _] = size.map(|side| side as usize);
+        for (index, (own, screen)) in own.iter().zip(&screen).enumerate() {
+            // Three pixels and more from silhouettes.
+            let depth = |index: usize| aovs.depth.get(index).copied().unwrap_or(f32::INFINITY);
+            let around = [index.wrapping_sub(3), index + 3, index.wrapping_sub(3 * width), index + 3 * width];
+            if !around.into_iter().all(|other| (depth(other) - depth(index)).abs() < 0.06) {
+                continue;
+            }
+            error += (kappa(*screen) - kappa(*own)).powi(2);
+            sum += kappa(*own).powi(2);
+            count += 1;
+        }
+        let error = (error / sum).sqrt();
+        eprintln!("{camera}: {error:.5} over {count} pixels");
+        assert!(count > 5000 && error < 0.005, "{camera}: {error} over {count} pixels");
+    }
+}
+
+#[test]
+fn neighbours_are_found_across_bands() {
+    let Some(gpu) = gpu::device() else { return };
+    let style = |memory_mb: u32| {
+        load(&format!(
+            r##"{{ "transparency": {{ "memory_mb": {memory_mb} }}, "mapping": {{ "*": "c" }}, "shaders": [{{ "name": "c", "shader": "curvature",
+              "properties": {{ "opacity_transfer": "fig7b", "curvature_source": "screen" }} }}] }}"##
+        ))
+    };
+    let pixels = |size: [u32; 2], memory_mb: u32| {
+        let mut engine = Engine::new(gpu.clone(), shipped("gearbox"), style(memory_mb));
+        engine.still(&Request::new(size, 1)).expect("a still").pixels
+    };
+    assert_eq!(pixels([1000, 1000], 512), pixels([1000, 1000], 16));
 }
 
 #[test]

@@ -44,7 +44,7 @@ impl Strip {
 }
 
 /// Parameters without pictures: they change nothing in a still, or no more than its noise, or only what others show is changed.
-const UNSEEN: [(&str, &str); 20] = [
+const UNSEEN: [(&str, &str); 21] = [
     ("geometry", "file_unit"),
     ("lights", "movable"),
     ("transparency", "memory_mb"),
@@ -53,6 +53,7 @@ const UNSEEN: [(&str, &str); 20] = [
     ("toon", "opacity"),
     ("unlit", "opacity"),
     ("curvature", "base_color"),
+    ("curvature", "curvature_source"),
     ("curvature", "opacity"),
     ("curvature", "smoothness"),
     ("curvature", "metallic"),

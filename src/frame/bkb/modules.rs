@@ -34,7 +34,7 @@ impl FragmentKind {
         match self {
             FragmentKind::Atoms => key.atoms,
             FragmentKind::Connectors => key.connectors,
-            FragmentKind::Meshes => key.meshes,
+            FragmentKind::Meshes => key.meshes.is_some(),
         }
     }
 
@@ -112,7 +112,7 @@ pub fn store_module(kind: FragmentKind, key: &BkbKey, numbered: bool) -> Module 
     let shade = ShadeKey {
         atoms: kind == FragmentKind::Atoms,
         connectors: kind == FragmentKind::Connectors,
-        meshes: kind == FragmentKind::Meshes,
+        meshes: key.shade.meshes.filter(|_| kind == FragmentKind::Meshes),
         ..key.shade.clone()
     };
     add_shading(&mut module, &shade);
