@@ -415,6 +415,11 @@ impl Engine {
         frame_input(content, drawn, request, (&self.forms, self.bkb_form), |input| draw(&mut self.renderer, input))
     }
 
+    /// What the shader `curvature` multiplies curvature over scene units by at a gain of 1; none before the first frame.
+    pub fn curvature_scale(&self) -> Option<f64> {
+        self.drawn.as_ref().map(|drawn| f64::from(drawn.gain) * f64::from(drawn.lengths.radius))
+    }
+
     /// Milliseconds of each pass of the last timed frame.
     pub fn pass_times(&self) -> &PassTimes {
         self.renderer.pass_times()

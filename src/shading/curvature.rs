@@ -162,7 +162,7 @@ impl ObjectShader for Curvature {
         &["CURVATURE_EMPHASIS", "CURVATURE_SCREEN"]
     }
     fn features_used(&self, values: &Values) -> u32 {
-        u32::from(values.number("contour_emphasis") > 0.0) | u32::from(is_of_screen(values)) * OF_SCREEN
+        u32::from(values.number("contour_emphasis") > 0.0) | if is_of_screen(values) { OF_SCREEN } else { 0 }
     }
     fn asks_neighbours(&self, features: u32) -> bool {
         features & OF_SCREEN != 0

@@ -1,5 +1,6 @@
 //! The experiments: one file each, and one line in [`EXPERIMENTS`].
 
+mod curvature;
 mod dof;
 mod fig10;
 mod geometry;
@@ -27,6 +28,7 @@ pub const EXPERIMENTS: &[&dyn Experiment] = &[
     &dof::Dof,
     &orbit::Orbit,
     &transparency::Transparency,
+    &curvature::Curvature,
     &hidden::Hidden,
     &fig10::Fig10,
 ];
