@@ -417,7 +417,7 @@ impl Engine {
 
     /// What the shader `curvature` multiplies curvature over scene units by at a gain of 1; none before the first frame.
     pub fn curvature_scale(&self) -> Option<f64> {
-        self.drawn.as_ref().map(|drawn| f64::from(drawn.gain) * f64::from(drawn.lengths.radius))
+        self.drawn.as_ref().map(|drawn| f64::from(drawn.gain) * drawn.lengths.radius)
     }
 
     /// Milliseconds of each pass of the last timed frame.
