@@ -445,7 +445,7 @@ fn contours_are_as_wide_in_points_at_any_size() {
           "shading": "unlit", "gain": 0, "opacity_transfer": [[0, 0], [1, 1]], "contour_width": "12pt" } }] }"##;
     let Some(mut engine) = gpu::engine(&["C 0 0 0"], style) else { return };
     let mut shares = Vec::new();
-    for size in [[270, 270], [540, 540], [1080, 1080]] {
+    for size in [[270, 270], [1080, 1080], [2160, 2160]] {
         let image = gpu::still(&mut engine, size, 4);
         let dark: f64 = gpu::channel(&image, 0).iter().map(|light| 1.0 - light).sum();
         shares.push(dark / f64::from(size[0] * size[1]));
