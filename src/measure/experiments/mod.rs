@@ -1,6 +1,7 @@
 //! The experiments: one file each, and one line in [`EXPERIMENTS`].
 
 mod dof;
+mod failures;
 mod fig10;
 mod geometry;
 mod hidden;
@@ -27,6 +28,7 @@ pub const EXPERIMENTS: &[&dyn Experiment] = &[
     &dof::Dof,
     &orbit::Orbit,
     &transparency::Transparency,
+    &failures::Failures,
     &hidden::Hidden,
     &fig10::Fig10,
 ];

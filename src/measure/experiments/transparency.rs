@@ -21,8 +21,8 @@ const OPACITIES: [f64; 4] = [0.005, 0.1, 0.4, 0.8];
 const OPACITIES_THOROUGH: [f64; 9] = [0.005, 0.02, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 0.95];
 
 /// Figures: the largest error of any channel in linear light, and the share of pixels with more than a step of 8 bits.
-const LARGEST: &str = "largest error, linear";
-const WRONG: &str = "pixels off by more than 1/255, %";
+pub(super) const LARGEST: &str = "largest error, linear";
+pub(super) const WRONG: &str = "pixels off by more than 1/255, %";
 
 /// A scene, how it is looked at, and how its atoms are drawn.
 struct Stand {
@@ -75,7 +75,7 @@ fn look(stand: &Stand, opacity: f64) -> Result<Look, MeasureError> {
     Look::of_text(&format!("{} {opacity}", stand.name), &text)
 }
 
-fn judge() -> Judge {
+pub(super) fn judge() -> Judge {
     Rc::new(|truth, picture| {
         let (mut largest, mut wrong, mut count) = (0.0f64, 0usize, 0usize);
         for (x, y) in (0..truth.size[1]).flat_map(|y| (0..truth.size[0]).map(move |x| (x, y))) {
