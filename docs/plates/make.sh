@@ -163,8 +163,8 @@ while IFS= read -r found; do
   case $found in
     '<h3>'*)
       scene=$((scene + 1)) picture=0
-      convert -background white -fill black -font DejaVu-Sans -pointsize 13 -size 480x20 -gravity west \
-        label:" ${found#<h3>}" "$work/hard_$scene.png" ;;
+      convert -background white -fill black -font DejaVu-Sans -pointsize 13 -size 490x20 -gravity west \
+        label:" ${found#<h3>}: reference, packed, bkb" +set label "$work/hard_$scene.png" ;;
     base64,*) bytes=${found#base64,} ;;
     alt=\"difference*) ;;
     *)

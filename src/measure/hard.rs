@@ -234,10 +234,10 @@ fn crossing_solids() -> String {
         let [x, y] = [cosine * x - sine * y, sine * x + cosine * y];
         [x, cosine * y - sine * z, sine * y + cosine * z]
     };
-    let same = |at: [f64; 3]| at;
-    let solids: [(&str, [f64; 3], &dyn Fn([f64; 3]) -> [f64; 3]); 3] =
-        [("a0", [0.52, 0.5, 0.51], &same), ("b1", [0.46, 0.47, 0.48], &turned), ("b2", [1.03, 0.13, 0.35], &same)];
-    for (name, half, place) in solids {
+    let solids =
+        [("a0", [0.52, 0.5, 0.51], false), ("b1", [0.46, 0.47, 0.48], true), ("b2", [1.03, 0.13, 0.35], false)];
+    for (name, half, is_turned) in solids {
+        let place = |at: [f64; 3]| if is_turned { turned(at) } else { at };
         faces.part(name);
         for sides in [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]] {
             let corner = |corner: usize| [0, 1, 2].map(|axis| half[axis] * ((corner >> axis & 1) as f64 * 2.0 - 1.0));
