@@ -155,4 +155,28 @@ for pair in glass:gearbox xray:gearbox ghost:caffeine; do
 done
 convert \( "$work"/{alone,opaque,fig7a}.png +append \) \( "$work"/{fig7b,fig8d,fig6b}.png +append \) \
   \( "$work"/look_{glass,xray,ghost}.png +append \) -append -strip +dither -colors 200 png8:curvature.png
+
+# Scenes that are hard for methods of transparency, as `measure failures` draws them: the reference, the lists, the k-buffer.
+"$restyle" measure failures -o "$work/measured" >/dev/null 2>&1
+scene=0
+while IFS= read -r found; do
+  case $found in
+    '<h3>'*)
+      scene=$((scene + 1)) picture=0
+      convert -background white -fill black -font DejaVu-Sans -pointsize 13 -size 490x20 -gravity west \
+        label:" ${found#<h3>}: reference, packed, bkb" +set label "$work/hard_$scene.png" ;;
+    base64,*) bytes=${found#base64,} ;;
+    alt=\"difference*) ;;
+    *)
+      picture=$((picture + 1))
+      printf '%s' "$bytes" | base64 -d > "$work/hard_${scene}_$picture.png" ;;
+  esac
+done < <(grep -oE '<h3>[^<]*|base64,[^"]*|alt="[^"]*' "$work/measured/failures/index.html")
+for number in $(seq "$scene"); do
+  convert "$work/hard_${number}_"?.png -bordercolor white -border 2 +append "$work/hard_row.png"
+  convert "$work/hard_$number.png" "$work/hard_row.png" -append -gravity west -background white -extent 500x144 \
+    "$work/hard_$(printf '%02d' "$number")_all.png"
+done
+montage "$work"/hard_??_all.png -tile 2x -geometry +0+0 -background white miff:- |
+  convert - -trim +repage -bordercolor white -border 4 -strip +dither -colors 250 png8:failures.png
 ls -l -- *.png

@@ -2,11 +2,6 @@
 
 @group(2) @binding(6) var color: texture_2d<f32>;
 
-@vertex
-fn slots_vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
-    return vec4<f32>(f32(corner & 1u) * 4.0 - 1.0, f32(corner >> 1u) * 4.0 - 1.0, 0.5, 1.0);
-}
-
 @fragment
 fn blend_slots(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let at = vec2<u32>(position.xy);

@@ -67,8 +67,3 @@ struct Shaded {
     @location(0) color: vec4<f32>,
     @location(1) geometry: vec4<u32>,
 }
-
-@vertex
-fn layers_vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
-    return vec4<f32>(f32(corner & 1u) * 4.0 - 1.0, f32(corner >> 1u) * 4.0 - 1.0, 0.5, 1.0);
-}

@@ -5,11 +5,6 @@
 @group(0) @binding(2) var<storage, read_write> layer_starts: array<u32>;
 @group(0) @binding(3) var<storage, read_write> layer_pool: array<vec2<u32>>;
 
-@vertex
-fn nearest_vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
-    return vec4<f32>(f32(corner & 1u) * 4.0 - 1.0, f32(corner >> 1u) * 4.0 - 1.0, 0.5, 1.0);
-}
-
 @fragment
 fn nearest_id(@builtin(position) position: vec4<f32>) -> @location(0) u32 {
     let at = vec2<u32>(position.xy);

@@ -11,11 +11,6 @@
 @group(0) @binding(10) var mesh_pages: texture_2d<u32>;
 @group(1) @binding(0) var visibility: texture_2d<u32>;
 
-@vertex
-fn aov_vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
-    return vec4<f32>(f32(corner & 1u) * 4.0 - 1.0, f32(corner >> 1u) * 4.0 - 1.0, 0.5, 1.0);
-}
-
 struct Found {
     @location(0) geometry: vec4<f32>,
     @location(1) kappa: f32,

@@ -8,8 +8,8 @@
 struct BasicMaterial {
   smoothness: f32,        // 1 - perceptual roughness
   metallic: f32,
-  opacity: f32,           // for the blending stage
   exposure_factor: f32,   // 2^stops
+  _pad0: f32,
   blur: EnvironmentBlur,  // of the environment, for this smoothness
 }
 

@@ -8,11 +8,6 @@ struct Output {
 @group(0) @binding(0) var<uniform> output: Output;
 @group(0) @binding(1) var light: texture_2d<f32>;
 
-@vertex
-fn resolve_vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
-    return vec4<f32>(f32(corner & 1u) * 4.0 - 1.0, f32(corner >> 1u) * 4.0 - 1.0, 0.5, 1.0);
-}
-
 @fragment
 fn resolve_8(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     return encode(textureLoad(light, vec2<i32>(position.xy), 0), output.background);

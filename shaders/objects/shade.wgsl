@@ -12,13 +12,6 @@ struct Output {
 @group(1) @binding(1) var<uniform> output: Output;
 @group(1) @binding(2) var visibility: texture_2d<u32>;
 
-// At the far end of the depth range: drawn with a depth test against the visibility pass, so that only
-// pixels that see something are shaded at all.
-@vertex
-fn shade_vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
-    return vec4<f32>(f32(corner & 1u) * 4.0 - 1.0, f32(corner >> 1u) * 4.0 - 1.0, 0.0, 1.0);
-}
-
 // Linear light of a surface; of a hull outline its colour.
 fn shaded(s: Surface, id: u32) -> vec3<f32> {
     let material = material_of(id);

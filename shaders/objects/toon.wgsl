@@ -17,12 +17,8 @@ struct ToonMaterial {
     specular_limit: f32,
     // 0 floor, 1 centre, 2 full.
     levels: u32,
-    opacity: f32,
     // (scale + bias)^exponent, the brightest level, 0..1 or more.
     top: f32,
-    _pad0: f32,
-    _pad1: f32,
-    _pad2: f32,
 }
 
 // Mean of the staircase min(floor(x), steps - 1), 0 for x < 0, over a pixel across which x changes by

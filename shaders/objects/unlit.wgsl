@@ -1,10 +1,10 @@
 // The base colour as it was written: no light, no tone map.
 
 struct UnlitMaterial {
-    opacity: f32,
     _pad0: f32,
     _pad1: f32,
     _pad2: f32,
+    _pad3: f32,
 }
 
 fn unlit_shade(s: Surface, m: UnlitMaterial) -> vec3<f32> {

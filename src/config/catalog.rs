@@ -3,7 +3,7 @@
 use super::param::{Param, check_table};
 use super::selector::{Attribute, ObjectKind};
 
-/// The shader of everything that nothing selects, and of what is not drawn yet.
+/// The shader of everything that nothing selects.
 pub const BASIC: &str = "basic";
 
 /// What a shader is for.
@@ -26,12 +26,9 @@ pub struct CatalogEntry {
     pub doc: &'static str,
     /// Its parameters.
     pub params: &'static [Param],
-    /// Whether this version draws it. One that is not drawn is part of the contract all the same: it loads with any
-    /// properties and one warning.
-    pub drawn: bool,
 }
 
-/// All names that a style can use. It must have [`BASIC`] as a drawn shader of objects.
+/// All names that a style can use. It must have [`BASIC`] as a shader of objects.
 #[derive(Debug, Clone, Copy)]
 pub struct Catalog<'a> {
     /// Shaders and post effects.
@@ -46,12 +43,9 @@ impl<'a> Catalog<'a> {
         self.shaders.iter().find(|entry| entry.name == name)
     }
 
-    /// Names of what is drawn, of one role or of both.
-    pub fn drawn_names(&self, role: Option<Role>) -> impl Iterator<Item = &'static str> + use<'a> {
-        self.shaders
-            .iter()
-            .filter(move |entry| entry.drawn && role.is_none_or(|role| role == entry.role))
-            .map(|entry| entry.name)
+    /// Names of one role or of both.
+    pub fn names(&self, role: Option<Role>) -> impl Iterator<Item = &'static str> + use<'a> {
+        self.shaders.iter().filter(move |entry| role.is_none_or(|role| role == entry.role)).map(|entry| entry.name)
     }
 
     /// What selectors can ask of the types that are drawn.
@@ -60,7 +54,7 @@ impl<'a> Catalog<'a> {
         Attribute::ALL.into_iter().filter(move |of| kinds.iter().any(|kind| kind.attributes().contains(of)))
     }
 
-    /// The shader that stands in.
+    /// The shader of everything that nothing selects.
     pub(super) fn basic(&self) -> &'a CatalogEntry {
         self.get(BASIC).expect("every catalog has basic, which Catalog::check finds in a test")
     }
@@ -68,8 +62,8 @@ impl<'a> Catalog<'a> {
     /// What is wrong with the catalog and its tables; empty if nothing is. For a test of whoever builds one.
     pub fn check(&self) -> Vec<String> {
         let mut wrong = Vec::new();
-        if !self.get(BASIC).is_some_and(|entry| entry.drawn && entry.role == Role::Object) {
-            wrong.push(format!("{BASIC:?} is not a drawn shader of objects"));
+        if !self.get(BASIC).is_some_and(|entry| entry.role == Role::Object) {
+            wrong.push(format!("{BASIC:?} is not a shader of objects"));
         }
         for (i, entry) in self.shaders.iter().enumerate() {
             if self.shaders[..i].iter().any(|earlier| earlier.name == entry.name) {
@@ -90,9 +84,8 @@ mod tests {
 
     #[test]
     fn a_catalog_without_basic_is_found() {
-        let entry =
-            CatalogEntry { name: "fog", role: Role::PostEffect, doc: "Hides what is far.", params: &[], drawn: true };
+        let entry = CatalogEntry { name: "fog", role: Role::PostEffect, doc: "Hides what is far.", params: &[] };
         let catalog = Catalog { shaders: &[entry, entry], kinds: &[] };
-        assert_eq!(catalog.check(), ["\"basic\" is not a drawn shader of objects", "\"fog\" is registered twice"]);
+        assert_eq!(catalog.check(), ["\"basic\" is not a shader of objects", "\"fog\" is registered twice"]);
     }
 }

@@ -57,7 +57,6 @@ pub(super) fn home(key: &str, catalog: &Catalog<'_>, entry: Option<&CatalogEntry
     }
     let of_mapping = if begins_selector(key) { Some(key) } else { Some(style::POST_EFFECTS).filter(known) };
     found.extend(of_mapping.map(|name| (name, "in \"mapping\"".to_owned())));
-    let drawn = || catalog.shaders.iter().filter(|entry| entry.drawn);
     if let Some(name) = shaders::SHARED.into_iter().find(known) {
         found.push((name, "in the \"properties\" of a shader".to_owned()));
     } else {
@@ -65,7 +64,7 @@ pub(super) fn home(key: &str, catalog: &Catalog<'_>, entry: Option<&CatalogEntry
             param_of(entry.params)
                 .map(|name| (name, format!("in the \"properties\" of a shader {}", quote(entry.name))))
         };
-        found.extend(drawn().filter_map(of));
+        found.extend(catalog.shaders.iter().filter_map(of));
     }
     found.extend(OF_ENTRY.into_iter().find(known).map(|name| (name, "in an entry of \"shaders\"".to_owned())));
     let (name, _) = *found.first()?;

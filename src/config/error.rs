@@ -345,26 +345,6 @@ impl std::error::Error for Mistakes {}
 /// What a style asks for and does not get, though it loads.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum Notice {
-    /// A shader of the contract that this version does not draw.
-    #[error("shader {} is not drawn by this version yet: its objects are drawn with \"{instead}\"", quote(.name))]
-    ShaderNotDrawn {
-        /// The shader.
-        name: String,
-        /// What stands in.
-        instead: &'static str,
-    },
-    /// A post effect of the contract that this version does not draw.
-    #[error("post effect {} is drawn by the reference renderer alone so far (--renderer reference): it is left out", quote(.name))]
-    EffectNotDrawn {
-        /// The effect.
-        name: String,
-    },
-    /// A property of the contract that this version does not draw.
-    #[error("{} is not drawn by this version yet: it changes nothing", quote(.name))]
-    PropertyNotDrawn {
-        /// The property.
-        name: String,
-    },
     /// A type of objects that this version does not draw.
     #[error("objects of type {} are not drawn by this version yet", quote(.name))]
     TypeNotDrawn {
@@ -446,9 +426,6 @@ impl Notice {
     /// The kind of warning, as tools read it.
     pub fn code(&self) -> &'static str {
         match self {
-            Self::ShaderNotDrawn { .. } => "shader_not_drawn",
-            Self::EffectNotDrawn { .. } => "effect_not_drawn",
-            Self::PropertyNotDrawn { .. } => "property_not_drawn",
             Self::TypeNotDrawn { .. } => "type_not_drawn",
             Self::MatchesNothing { .. } => "matches_nothing",
             Self::NearlyBlack { .. } => "nearly_black",

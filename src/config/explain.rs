@@ -43,8 +43,7 @@ pub fn text(style: &Style) -> String {
             Role::Object => "shader",
             Role::PostEffect => "post effect",
         };
-        let title =
-            format!("{what} {}: {}  {}", quote(&used.name), drawing(used), entry_origin(used, &style.overrides));
+        let title = format!("{what} {}: {}  {}", quote(&used.name), used.shader, entry_origin(used, &style.overrides));
         section(&title, &rows_of(&used.values, &style.overrides));
     }
     let mut rules: Vec<Row> = Vec::new();
@@ -56,7 +55,7 @@ pub fn text(style: &Style) -> String {
     section("mapping, the first line that picks an object decides", &rules);
     let effects = style.listed_effects.iter().map(|effect| {
         let used = &style.shaders[effect.index];
-        [quote(&used.name), drawing(used), spot(&effect.place)]
+        [quote(&used.name), used.shader.to_owned(), spot(&effect.place)]
     });
     let origin =
         style.values.effects_place.as_ref().map_or("default".to_owned(), |place| said(place, &style.overrides));
@@ -73,8 +72,7 @@ pub fn json(style: &Style) -> Json {
         json!({
             "name": used.name,
             "role": match used.role { Role::Object => "shader", Role::PostEffect => "post_effect" },
-            "shader": used.stands_in_for.unwrap_or(used.shader),
-            "drawn_with": used.drawn.then_some(used.shader),
+            "shader": used.shader,
             "origin": used.place.as_ref().map_or(json!("default"), place_json),
             "over": used.place.as_ref().and_then(|place| overrides.of(place)).map(place_json),
             "properties": values_json(&used.values, overrides),
@@ -90,7 +88,7 @@ pub fn json(style: &Style) -> Json {
     });
     let effects = style.listed_effects.iter().map(|effect| {
         let used = &style.shaders[effect.index];
-        json!({ "name": used.name, "effect": used.shader, "drawn": used.drawn, "origin": place_json(&effect.place) })
+        json!({ "name": used.name, "effect": used.shader, "origin": place_json(&effect.place) })
     });
     let lights = style.values.lights.iter().map(|light| values_json(light, overrides));
     let list_json = |place: &Option<Place>| {
@@ -167,15 +165,6 @@ fn shown(param: &Param, value: &Value) -> String {
         Value::Transfer(transfer) => transfer.to_string(),
     };
     if param.unit.is_empty() { bare } else { format!("{bare} {}", param.unit) }
-}
-
-/// `toon`, or `curvature, drawn with basic for now`.
-fn drawing(used: &ShaderUse) -> String {
-    match used.stands_in_for {
-        Some(asked) => format!("{asked}, drawn with {} for now", used.shader),
-        None if used.drawn => used.shader.to_owned(),
-        None => format!("{}, not drawn yet", used.shader),
-    }
 }
 
 fn entry_origin(used: &ShaderUse, overrides: &Overrides) -> String {

@@ -128,13 +128,11 @@ pub struct Param {
     pub doc: &'static str,
     /// Values that show what it does, as JSON: the editor offers them, and the manual has a picture of each.
     pub examples: &'static [&'static str],
-    /// Whether this version draws it; one that is not drawn loads with one warning.
-    pub drawn: bool,
 }
 
 impl Param {
     const fn new(name: &'static str, kind: Kind, default: Default) -> Self {
-        Self { name, kind, default, range: None, unit: "", doc: "", examples: &[], drawn: true }
+        Self { name, kind, default, range: None, unit: "", doc: "", examples: &[] }
     }
 
     /// A number.
@@ -273,12 +271,6 @@ impl Param {
     /// Accepts `"true"` and `"false"` for a boolean.
     pub const fn or_text(mut self) -> Self {
         self.kind = Kind::BooleanOrText;
-        self
-    }
-
-    /// Part of the contract, but not drawn by this version.
-    pub const fn not_drawn_yet(mut self) -> Self {
-        self.drawn = false;
         self
     }
 

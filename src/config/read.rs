@@ -109,8 +109,7 @@ impl<'a> Reader<'a> {
         let mut values = Values::defaults(params);
         for member in members {
             let Some(index) = params.iter().position(|param| param.name == member.key) else {
-                let names = |drawn| params.iter().filter(move |param| param.drawn == drawn).map(|param| param.name);
-                self.unknown_key_of(owner, member, names(true), names(false), None);
+                self.unknown_key(owner, member, params.iter().map(|param| param.name), None);
                 continue;
             };
             self.set(&mut values, index, &member.value);
@@ -120,15 +119,6 @@ impl<'a> Reader<'a> {
 
     /// Reads one parameter of a table.
     pub(super) fn set(&mut self, values: &mut Values, index: usize, node: &Node) {
-        self.set_of_undrawn(values, index, node);
-        let param = &values.params()[index];
-        if !param.drawn {
-            self.warn(self.texts.place(node.span), Notice::PropertyNotDrawn { name: param.name.to_owned() });
-        }
-    }
-
-    /// The same of what is told not to be drawn already.
-    pub(super) fn set_of_undrawn(&mut self, values: &mut Values, index: usize, node: &Node) {
         let param = &values.params()[index];
         let style = self.texts.0[node.span.file as usize].path.as_deref();
         let pictures = &mut self.pictures;
@@ -163,36 +153,25 @@ impl<'a> Reader<'a> {
         allowed: impl IntoIterator<Item = &'static str> + Clone,
         entry: Option<&CatalogEntry>,
     ) {
-        self.unknown_key_of(owner, member, allowed, [], entry);
-    }
-
-    /// Whether a key of `mapping` that is no selector is known elsewhere.
-    pub(super) fn is_stray(&self, key: &str) -> bool {
-        !self.mistakes.is_full() && !begins_selector(key) && home(key, &self.catalog, None).is_some()
-    }
-
-    fn unknown_key_of(
-        &mut self,
-        owner: &str,
-        member: &Member,
-        allowed: impl IntoIterator<Item = &'static str> + Clone,
-        also: impl IntoIterator<Item = &'static str> + Clone,
-        entry: Option<&CatalogEntry>,
-    ) {
         // Where a bracket is missing, a key may only have come into the wrong object.
         let is_of_style = super::style::KEYS.contains(&member.key.as_str());
         if is_of_style && !self.texts.0[member.key_span.file as usize].is_closed {
             return;
         }
         let key = member.key.clone();
-        let is_slip = || allowed.clone().into_iter().chain(also.clone()).any(|name| is_same_word(&key, name));
+        let is_slip = || allowed.clone().into_iter().any(|name| is_same_word(&key, name));
         let home = if self.mistakes.is_full() || is_slip() { None } else { home(&key, &self.catalog, entry) };
-        let mut hint = self.hint(|| Hint::with_more(&key, allowed.clone(), also.clone()));
+        let mut hint = self.hint(|| Hint::new(&key, allowed.clone()));
         if home.is_some() {
             hint.nearest = None;
         }
         let (owner, key, home) = (owner.into(), key.into(), home.map(String::into_boxed_str));
         self.wrong(member.key_span, Problem::UnknownKey { owner, key, home, hint });
+    }
+
+    /// Whether a key of `mapping` that is no selector is known elsewhere.
+    pub(super) fn is_stray(&self, key: &str) -> bool {
+        !self.mistakes.is_full() && !begins_selector(key) && home(key, &self.catalog, None).is_some()
     }
 
     /// A hint, unless the mistake will only be counted.

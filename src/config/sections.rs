@@ -16,13 +16,6 @@ pub struct Section {
     pub is_list: bool,
 }
 
-impl Section {
-    /// Whether this version draws any of it.
-    pub fn is_drawn(&self) -> bool {
-        self.params.iter().any(|param| param.drawn)
-    }
-}
-
 /// All of them, in the order of the manual.
 pub const SECTIONS: [Section; 4] = [
     Section {

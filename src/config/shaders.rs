@@ -13,7 +13,7 @@ use super::values::Values;
 /// The keys of one entry of `shaders`.
 const KEYS: [&str; 3] = ["name", "shader", "properties"];
 
-/// What every shader of objects has, so that a stand-in can keep it.
+/// What every shader of objects has.
 pub(super) const SHARED: [&str; 2] = ["base_color", "opacity"];
 
 /// Most names of a file that a message lists.
@@ -29,12 +29,8 @@ pub struct ShaderUse {
     pub name: String,
     /// The registered shader that draws.
     pub shader: &'static str,
-    /// The registered shader that the file asks for, if this version does not draw it and `shader` stands in.
-    pub stands_in_for: Option<&'static str>,
     /// What it is for.
     pub role: Role,
-    /// Whether this version draws it; only a post effect may not be.
-    pub drawn: bool,
     /// Its properties.
     pub values: Values,
     /// Its entry; `None` if the file declares none.
@@ -105,7 +101,7 @@ impl<'a> Shaders<'a> {
         let registered = match shader {
             Some(shader) => self.registered(reader, shader),
             None => {
-                missing(reader, entry, "shader", Hint::list(self.catalog.drawn_names(None)));
+                missing(reader, entry, "shader", Hint::list(self.catalog.names(None)));
                 None
             }
         };
@@ -113,7 +109,7 @@ impl<'a> Shaders<'a> {
             Some(properties) => reader.object("properties", properties),
             None => &[],
         };
-        let used = registered.map(|found| self.use_of(reader, found, entry, name.as_deref(), properties));
+        let used = registered.map(|found| Self::use_of(reader, found, entry, name.as_deref(), properties));
         let name = name?;
         if !self.declared.contains_key(&name) {
             let index = used.map(|used| self.push(used));
@@ -126,67 +122,25 @@ impl<'a> Shaders<'a> {
         let name = reader.text("shader", shader)?;
         let found = self.catalog.get(name);
         if found.is_none() {
-            let all = self.catalog.shaders.iter().map(|entry| entry.name);
-            let hint = reader.hint(|| Hint::with_more(name, self.catalog.drawn_names(None), all));
+            let hint = reader.hint(|| Hint::new(name, self.catalog.names(None)));
             reader.wrong(shader.span, Problem::UnknownName { what: "shader", name: name.to_owned(), hint });
         }
         found
     }
 
     fn use_of(
-        &self,
         reader: &mut Reader<'_>,
         entry: &CatalogEntry,
         node: &Node,
         name: Option<&str>,
         properties: &[Member],
     ) -> ShaderUse {
-        let place = reader.texts.place(node.get("shader").unwrap_or(node).span);
-        let mut used = self.with_defaults(reader, entry, place);
-        used.name = name.unwrap_or(entry.name).to_owned();
-        used.place = Some(reader.texts.place(node.span));
-        used.name_place = node.get("name").map(|name| reader.texts.place(name.span));
-        if entry.drawn {
-            used.values = reader.table(&format!("shader {}", quote(entry.name)), properties, entry.params);
-            return used;
-        }
-        // Not all of its properties are known yet: take those that are, or that what stands in shares with it, and leave others.
-        let is_known = |member: &&Member| entry.role == Role::PostEffect || SHARED.contains(&member.key.as_str());
-        for member in properties.iter().filter(is_known) {
-            if let Some(index) = used.values.params().iter().position(|param| param.name == member.key) {
-                match entry.role {
-                    Role::Object => reader.set(&mut used.values, index, &member.value),
-                    Role::PostEffect => reader.set_of_undrawn(&mut used.values, index, &member.value),
-                }
-            }
-        }
-        used
-    }
-
-    /// A registered shader with its defaults, or what stands in for it; `place` asks for it.
-    fn with_defaults(&self, reader: &mut Reader<'_>, entry: &CatalogEntry, place: Place) -> ShaderUse {
-        let name = entry.name.to_owned();
-        let basic = self.catalog.basic();
-        let (drawing, params, stands_in_for) = match (entry.drawn, entry.role) {
-            (true, _) => (entry.name, entry.params, None),
-            (false, Role::Object) => {
-                reader.warn(place, Notice::ShaderNotDrawn { name: name.clone(), instead: basic.name });
-                (basic.name, basic.params, Some(entry.name))
-            }
-            (false, Role::PostEffect) => {
-                reader.warn(place, Notice::EffectNotDrawn { name: name.clone() });
-                (entry.name, entry.params, None)
-            }
-        };
         ShaderUse {
-            name,
-            shader: drawing,
-            stands_in_for,
-            role: entry.role,
-            drawn: entry.drawn || entry.role == Role::Object,
-            values: Values::defaults(params),
-            place: None,
-            name_place: None,
+            name: name.unwrap_or(entry.name).to_owned(),
+            place: Some(reader.texts.place(node.span)),
+            name_place: node.get("name").map(|name| reader.texts.place(name.span)),
+            values: reader.table(&format!("shader {}", quote(entry.name)), properties, entry.params),
+            ..with_defaults(entry)
         }
     }
 
@@ -236,16 +190,15 @@ impl<'a> Shaders<'a> {
         if !self.check_role(reader, node, name, entry.role, role) {
             return None;
         }
-        let place = reader.texts.place(node.span);
-        Some(self.undeclared_use(reader, entry, place))
+        Some(self.undeclared_use(entry))
     }
 
     /// What draws everything that nothing selects: `basic`, of the file if it declares one.
-    pub(super) fn basic(&mut self, reader: &mut Reader<'_>) -> usize {
+    pub(super) fn basic(&mut self) -> usize {
         let basic = self.catalog.basic();
         match self.declared.get(basic.name) {
             Some(Some(index)) if self.uses[*index].role == Role::Object => *index,
-            _ => self.undeclared_use(reader, basic, Place::of_file("")),
+            _ => self.undeclared_use(basic),
         }
     }
 
@@ -272,12 +225,11 @@ impl<'a> Shaders<'a> {
         }
     }
 
-    fn undeclared_use(&mut self, reader: &mut Reader<'_>, entry: &CatalogEntry, place: Place) -> usize {
+    fn undeclared_use(&mut self, entry: &CatalogEntry) -> usize {
         if let Some(index) = self.undeclared.get(entry.name) {
             return *index;
         }
-        let used = self.with_defaults(reader, entry, place);
-        let index = self.push(used);
+        let index = self.push(with_defaults(entry));
         self.undeclared.insert(entry.name, index);
         index
     }
@@ -296,17 +248,26 @@ impl<'a> Shaders<'a> {
         false
     }
 
-    /// What may stand where `name` stands: entries of the file in their order, then what is registered and drawn.
+    /// What may stand where `name` stands: entries of the file in their order, then what is registered.
     fn names(&self, name: &str, role: Role) -> Hint {
         let declared = self.uses.iter().filter(|used| used.place.is_some() && used.role == role);
         let declared: Vec<&str> = declared.map(|used| used.name.as_str()).take(MOST_COMPARED).collect();
-        let of_role = self.catalog.shaders.iter().filter(|entry| entry.role == role);
-        let (drawn, not_yet): (Vec<_>, Vec<_>) = of_role.partition(|entry| entry.drawn);
-        let names = |entry: &&CatalogEntry| -> &str { entry.name };
-        let undeclared = drawn.iter().map(names).filter(|name| !declared.contains(name));
+        let registered = self.catalog.names(Some(role)).map(|name| -> &str { name });
+        let undeclared = registered.filter(|name| !declared.contains(name));
         let listed = declared.iter().copied().take(MOST_NAMES).chain(undeclared);
-        let unlisted = declared.iter().copied().skip(MOST_NAMES);
-        Hint::with_more(name, listed, unlisted.chain(not_yet.iter().map(names)))
+        Hint::with_more(name, listed, declared.iter().copied().skip(MOST_NAMES))
+    }
+}
+
+/// A registered shader with its defaults.
+fn with_defaults(entry: &CatalogEntry) -> ShaderUse {
+    ShaderUse {
+        name: entry.name.to_owned(),
+        shader: entry.name,
+        role: entry.role,
+        values: Values::defaults(entry.params),
+        place: None,
+        name_place: None,
     }
 }
 

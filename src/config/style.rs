@@ -190,7 +190,7 @@ pub(super) fn resolve(texts: &Texts, merged: Merged, catalog: &Catalog<'_>) -> R
         Some(node) => read_mapping(&mut reader, &mut shaders, node),
         None => (Vec::new(), Vec::new()),
     };
-    let basic = shaders.basic(&mut reader);
+    let basic = shaders.basic();
     if reader.mistakes.is_empty() {
         shaders.warn_of_unused(&mut reader, &mapping, &listed_effects, basic);
     }
@@ -202,14 +202,13 @@ pub(super) fn resolve(texts: &Texts, merged: Merged, catalog: &Catalog<'_>) -> R
         mistakes.list.sort_by_key(|mistake| order(&mistake.place));
         return Err(Mistakes { files, warnings, unlisted_warnings, ..mistakes });
     }
-    let drawn = listed_effects.iter().map(|effect| effect.index).filter(|index| shaders.uses[*index].drawn).collect();
     Ok(Style {
         camera: Camera::new(&values.camera),
         geometry: Geometry::new(&values.geometry),
         mapping,
         shaders: shaders.uses,
         basic,
-        post_effects: drawn,
+        post_effects: listed_effects.iter().map(|effect| effect.index).collect(),
         listed_effects,
         lights: values.lights.iter().map(Light::new).collect(),
         transparency: Transparency::new(&values.transparency),

@@ -176,6 +176,7 @@ impl Engine {
         let started = Instant::now();
         let noticed = live.parts[index].pending.noticed().unwrap_or(started);
         live.parts[index].pending.read();
+        live.watch.will_read(part);
         let taken = match part {
             Part::Style => self.reload_style(live),
             Part::Scene => self.reload_scene(live),

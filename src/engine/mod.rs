@@ -49,10 +49,7 @@ pub const DRAWN_KINDS: &[ObjectKind] = &[ObjectKind::Atom, ObjectKind::Connector
 pub fn catalog() -> Vec<CatalogEntry> {
     let drawn = SHADERS.iter().map(|shader| (shader.name(), Role::Object, shader.doc(), shader.params()));
     let effects = EFFECTS.iter().map(|effect| (effect.name(), Role::PostEffect, effect.doc(), effect.params()));
-    drawn
-        .chain(effects)
-        .map(|(name, role, doc, params)| CatalogEntry { name, role, doc, params, drawn: true })
-        .collect()
+    drawn.chain(effects).map(|(name, role, doc, params)| CatalogEntry { name, role, doc, params }).collect()
 }
 
 /// What to draw, and how finely.

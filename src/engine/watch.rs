@@ -35,7 +35,8 @@ pub struct Watch<G> {
     names: BTreeMap<PathBuf, BTreeSet<G>>,
     /// Watched folders, and which folder each was.
     folders: BTreeMap<PathBuf, Look>,
-    looks: BTreeMap<PathBuf, Look>,
+    /// What each group knows of its files.
+    looks: BTreeMap<(G, PathBuf), Look>,
     next_look: Instant,
 }
 
@@ -70,6 +71,14 @@ impl<G: Copy + Ord> Watch<G> {
         self.find_names();
     }
 
+    /// The files of a group are about to be read as they are now: the next look is to find only what changes from here on, not once
+    /// more what an event has told.
+    pub fn will_read(&mut self, group: G) {
+        for ((_, file), known) in self.looks.iter_mut().filter(|((of, _), _)| *of == group) {
+            *known = look(file);
+        }
+    }
+
     /// Finds the names to listen for anew: links may lead elsewhere by now.
     fn find_names(&mut self) {
         self.names.clear();
@@ -78,10 +87,12 @@ impl<G: Copy + Ord> Watch<G> {
                 self.names.entry(name).or_default().insert(group);
             }
         }
-        let files: BTreeSet<&PathBuf> = self.groups.values().flatten().collect();
-        self.looks.retain(|file, _| files.contains(file));
-        for file in files {
-            self.looks.entry(file.clone()).or_insert_with(|| look(file));
+        let groups = &self.groups;
+        self.looks.retain(|(group, file), _| groups.get(group).is_some_and(|files| files.contains(file)));
+        for (&group, files) in groups {
+            for file in files {
+                self.looks.entry((group, file.clone())).or_insert_with(|| look(file));
+            }
         }
         self.watch_folders();
     }
@@ -142,17 +153,13 @@ impl<G: Copy + Ord> Watch<G> {
     /// Looks at every file, and watches folders that have come or were replaced.
     fn look_around(&mut self, touched: &mut Vec<(G, Touch, Instant)>) {
         let now = Instant::now();
-        for (file, known) in &mut self.looks {
+        for ((group, file), known) in &mut self.looks {
             let seen = look(file);
-            if seen != *known {
-                *known = seen;
-                // What an event has told already is no news, and may be known to be whole.
-                let groups = self.groups.iter().filter(|(group, files)| {
-                    files.contains(file) && !touched.iter().any(|(touched, _, _)| touched == *group)
-                });
-                let seen: Vec<_> = groups.map(|(&group, _)| (group, Touch::Written, now)).collect();
-                touched.extend(seen);
+            // What an event has told already is no news, and may be known to be whole.
+            if seen != *known && !touched.iter().any(|(touched, _, _)| touched == group) {
+                touched.push((*group, Touch::Written, now));
             }
+            *known = seen;
         }
         self.find_names();
         let has_events = self.watcher.is_some()

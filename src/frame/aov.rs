@@ -44,7 +44,7 @@ impl Aov {
                     gpu,
                     "aov",
                     &aov_module(from.orthographic, from.meshes),
-                    ["aov_vertex", "aov_fragment"],
+                    "aov_fragment",
                     &[&visibility.layout, &layout],
                     &[GEOMETRY_FORMAT.into(), CURVATURE_FORMAT.into()],
                 )?;
@@ -87,6 +87,7 @@ pub fn aov_module(orthographic: bool, meshes: bool) -> Module {
             "const ORTHOGRAPHIC: bool = {orthographic};\nconst ATOMS: bool = true;\nconst CONNECTORS: bool = true;\nconst MESHES: bool = {meshes};\nconst CURVATURE: bool = true;"
         ),
     );
+    module.add(wgsl!("lib/fullscreen.wgsl"));
     module.add(wgsl!("objects/aov.wgsl"));
     module
 }

@@ -2,6 +2,9 @@
 
 use crate::gpu::{Gpu, GpuError, Module};
 
+/// The vertex entry of every pass over all pixels, in `lib/fullscreen.wgsl`.
+pub const VERTEX: &str = "fullscreen_vertex";
+
 /// Declares what a full-screen pipeline reads at its own group.
 pub fn layout(gpu: &Gpu, label: &'static str, types: &[wgpu::BindingType]) -> wgpu::BindGroupLayout {
     let entries: Vec<wgpu::BindGroupLayoutEntry> = types
@@ -25,7 +28,7 @@ pub fn pipeline(
     gpu: &Gpu,
     label: &'static str,
     module: &Module,
-    entries: [&str; 2],
+    entry: &str,
     layouts: &[&wgpu::BindGroupLayout],
     targets: &[wgpu::ColorTargetState],
 ) -> Result<wgpu::RenderPipeline, GpuError> {
@@ -41,7 +44,7 @@ pub fn pipeline(
         layout: Some(&layout),
         vertex: wgpu::VertexState {
             module: &module,
-            entry_point: Some(entries[0]),
+            entry_point: Some(VERTEX),
             compilation_options: Default::default(),
             buffers: &[],
         },
@@ -50,7 +53,7 @@ pub fn pipeline(
         multisample: Default::default(),
         fragment: Some(wgpu::FragmentState {
             module: &module,
-            entry_point: Some(entries[1]),
+            entry_point: Some(entry),
             compilation_options: Default::default(),
             targets: &targets.iter().cloned().map(Some).collect::<Vec<_>>(),
         }),

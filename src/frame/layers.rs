@@ -205,10 +205,10 @@ impl Layers {
     /// [`GpuError::Driver`] where a shader does not compile.
     pub fn prepare(&mut self, gpu: &Gpu, shade: &Shade, plan: &LayersPlan) -> Result<(), GpuError> {
         if let Some(layout) = shade.layers_layout().filter(|_| plan.has_nearest() && self.nearest.is_none()) {
-            let entries = ["nearest_vertex", "nearest_id"];
             let targets = [ID_FORMAT.into()];
             let module = nearest_module();
-            self.nearest = Some(fullscreen::pipeline(gpu, "nearest layers", &module, entries, &[layout], &targets)?);
+            self.nearest =
+                Some(fullscreen::pipeline(gpu, "nearest layers", &module, "nearest_id", &[layout], &targets)?);
         }
         if self.room.is_none() {
             let stage = wgpu::ShaderStages::COMPUTE;
@@ -518,7 +518,7 @@ impl Layers {
 
 /// The WGSL of nearest ids.
 pub fn nearest_module() -> Module {
-    Module::new(&[wgsl!("lib/layers.wgsl"), wgsl!("layers/nearest.wgsl")])
+    Module::new(&[wgsl!("lib/fullscreen.wgsl"), wgsl!("lib/layers.wgsl"), wgsl!("layers/nearest.wgsl")])
 }
 
 /// The WGSL that puts all lists in order.

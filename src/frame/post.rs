@@ -302,10 +302,9 @@ impl Post {
             let (Some(aov), Some((layout, _)), Some(group)) = (EFFECTS[key.effect].aov(), layout, groups.last()) else {
                 continue;
             };
-            let entries = ["post_vertex", aov.entry];
             let layouts = [&visibility.layout, layout];
             let pipeline =
-                fullscreen::pipeline(gpu, aov.name, &effect_module(key), entries, &layouts, &[AOV_FORMAT.into()])?;
+                fullscreen::pipeline(gpu, aov.name, &effect_module(key), aov.entry, &layouts, &[AOV_FORMAT.into()])?;
             let texture = gpu.target(aov.name, size, 1, AOV_FORMAT);
             let target = texture.create_view(&Default::default());
             let groups: &[(&wgpu::BindGroup, &[u32])] = &[(&scene.group, &[SceneBindings::offset(0)]), (group, &[])];
@@ -341,10 +340,10 @@ fn build(gpu: &Gpu, visibility: &Visibility, key: &EffectKey) -> Result<Pipeline
         };
         let is_last = pass.target == PassTarget::Picture;
         let as_surfaces = EFFECTS[key.effect].surfaces_entry().filter(|_| is_last && key.leaves_surfaces);
-        let entries = ["post_vertex", as_surfaces.unwrap_or(pass.entry)];
+        let entry = as_surfaces.unwrap_or(pass.entry);
         let layouts = [&visibility.layout, &layout];
         let targets: Vec<_> = [target].into_iter().chain(as_surfaces.map(|_| GEOMETRY_FORMAT.into())).collect();
-        let pipeline = fullscreen::pipeline(gpu, pass.name, &module, entries, &layouts, &targets)?;
+        let pipeline = fullscreen::pipeline(gpu, pass.name, &module, entry, &layouts, &targets)?;
         Ok((layout, pipeline))
     };
     passes.iter().enumerate().map(build).collect()
@@ -390,6 +389,7 @@ pub fn effect_module(key: &EffectKey) -> Module {
         bindings.push_str(&format!("@group(1) @binding({binding}) var {}: texture_2d<{kind}>;\n", pass.name));
     }
     module.add_generated("effect bindings", bindings);
+    module.add(wgsl!("lib/fullscreen.wgsl"));
     module.add(wgsl!("lib/post.wgsl"));
     module.add(wgsl!("lib/finish.wgsl"));
     for file in effect.wgsl(key.features) {

@@ -25,14 +25,7 @@ impl Resolve {
         let light = fullscreen::texture(wgpu::TextureSampleType::Float { filterable: false });
         let layout = fullscreen::layout(gpu, "resolve", &[fullscreen::UNIFORM, light]);
         let (entry, format) = if wide { ("resolve_16", super::OUTPUT_16) } else { ("resolve_8", super::OUTPUT_8) };
-        let pipeline = fullscreen::pipeline(
-            gpu,
-            "resolve",
-            &resolve_module(),
-            ["resolve_vertex", entry],
-            &[&layout],
-            &[format.into()],
-        )?;
+        let pipeline = fullscreen::pipeline(gpu, "resolve", &resolve_module(), entry, &[&layout], &[format.into()])?;
         self.pipelines.insert(wide, (layout, pipeline));
         Ok(())
     }
@@ -69,5 +62,5 @@ impl Resolve {
 
 /// The WGSL of the resolve pass.
 pub fn resolve_module() -> Module {
-    Module::new(&[wgsl!("lib/encode.wgsl"), wgsl!("objects/resolve.wgsl")])
+    Module::new(&[wgsl!("lib/fullscreen.wgsl"), wgsl!("lib/encode.wgsl"), wgsl!("objects/resolve.wgsl")])
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::fmt::Write as _;
 
+use super::fullscreen;
 use super::layers::{self, LayerTargets};
 use super::lights::Lights;
 use super::mesh::{self, MeshForm};
@@ -235,12 +236,12 @@ impl Shade {
             layout: Some(&pipeline_layout),
             vertex: wgpu::VertexState {
                 module: &module,
-                entry_point: Some(if key.layers.is_some() { "layers_vertex" } else { "shade_vertex" }),
+                entry_point: Some(fullscreen::VERTEX),
                 compilation_options: Default::default(),
                 buffers: &[],
             },
             primitive: Default::default(),
-            // The pass lies at depth 0, behind all that is drawn: it passes only where something is in front of it.
+            // The pass lies behind all that is drawn: only pixels that see something are shaded at all.
             depth_stencil: key.layers.is_none().then(|| wgpu::DepthStencilState {
                 format: DEPTH_FORMAT,
                 depth_write_enabled: Some(false),
@@ -463,7 +464,7 @@ impl Shade {
 
 /// The WGSL of the shading pass for a key.
 pub fn shade_module(key: &ShadeKey) -> Module {
-    let mut module = Module::default();
+    let mut module = Module::new(&[wgsl!("lib/fullscreen.wgsl")]);
     add_shading(&mut module, key);
     if let Some((finish, _)) = key.layers {
         module.add(wgsl!("lib/geometry.wgsl"));

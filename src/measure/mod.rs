@@ -11,6 +11,7 @@ mod date;
 pub mod experiment;
 pub mod experiments;
 mod front;
+pub mod hard;
 pub mod metrics;
 mod overview;
 pub mod page;

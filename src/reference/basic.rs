@@ -203,7 +203,7 @@ mod tests {
     use super::*;
 
     fn material(smoothness: f32, metallic: f32) -> Basic {
-        Basic::new(&BasicMaterial::new(smoothness, metallic, 1.0, 1.0))
+        Basic::new(&BasicMaterial::new(smoothness, metallic, 1.0))
     }
 
     #[test]

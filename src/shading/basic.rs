@@ -30,10 +30,10 @@ gpu_struct! {
         pub smoothness: f32,
         /// 0 is plastic (4 % reflectance), 1 is metal (the base colour is the reflectance).
         pub metallic: f32,
-        /// Coverage, 0..=1; the blending stage uses it, the shading does not.
-        pub opacity: f32,
         /// Factor on radiance before tone mapping, 2^stops.
         pub exposure_factor: f32,
+        /// Padding.
+        pub _pad0: f32,
         /// How far this smoothness blurs the environment.
         pub blur: EnvironmentBlur,
     }
@@ -41,13 +41,13 @@ gpu_struct! {
 
 impl BasicMaterial {
     /// A material in the neutral studio.
-    pub fn new(smoothness: f32, metallic: f32, opacity: f32, exposure_factor: f32) -> BasicMaterial {
+    pub fn new(smoothness: f32, metallic: f32, exposure_factor: f32) -> BasicMaterial {
         let roughness = (1.0 - smoothness).max(brdf_table::ROUGHNESS_MIN);
         BasicMaterial {
             smoothness,
             metallic,
-            opacity,
             exposure_factor,
+            _pad0: 0.0,
             blur: EnvironmentBlur::new(&Studio::neutral_shape(), roughness),
         }
     }
@@ -82,7 +82,6 @@ impl ObjectShader for Basic {
         let material = BasicMaterial::new(
             values.number("smoothness") as f32,
             values.number("metallic") as f32,
-            values.number("opacity") as f32,
             context.exposure_factor,
         );
         bytemuck::bytes_of(&material).to_vec()

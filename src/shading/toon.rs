@@ -99,16 +99,8 @@ gpu_struct! {
         pub specular_limit: f32,
         /// 0 floor, 1 centre, 2 full.
         pub levels: u32,
-        /// 0..1.
-        pub opacity: f32,
         /// (scale + bias)^exponent.
         pub top: f32,
-        /// Padding.
-        pub _pad0: f32,
-        /// Padding.
-        pub _pad1: f32,
-        /// Padding.
-        pub _pad2: f32,
     }
 }
 
@@ -144,11 +136,7 @@ impl ObjectShader for Toon {
             outline_bias: values.number("outline_bias") as f32,
             specular_limit: values.number("specular_limit") as f32,
             levels: LEVEL_WORDS.iter().position(|level| *level == values.choice("levels")).unwrap_or(0) as u32,
-            opacity: values.number("opacity") as f32,
             top: (values.number("scale") + values.number("bias")).powf(values.number("exponent")) as f32,
-            _pad0: 0.0,
-            _pad1: 0.0,
-            _pad2: 0.0,
         })
         .to_vec()
     }

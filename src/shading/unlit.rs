@@ -14,14 +14,14 @@ gpu_struct! {
     "objects/unlit.wgsl",
     /// See `shaders/objects/unlit.wgsl`.
     pub struct UnlitMaterial {
-        /// 0..1.
-        pub opacity: f32,
-        /// Padding.
+        /// Padding: colour and opacity are in what all shaders share.
         pub _pad0: f32,
         /// Padding.
         pub _pad1: f32,
         /// Padding.
         pub _pad2: f32,
+        /// Padding.
+        pub _pad3: f32,
     }
 }
 
@@ -45,8 +45,8 @@ impl ObjectShader for Unlit {
     fn material_info(&self) -> StructInfo {
         UnlitMaterial::info()
     }
-    fn material(&self, values: &Values, _context: &MaterialContext<'_>) -> Vec<u8> {
-        let material = UnlitMaterial { opacity: values.number("opacity") as f32, _pad0: 0.0, _pad1: 0.0, _pad2: 0.0 };
+    fn material(&self, _values: &Values, _context: &MaterialContext<'_>) -> Vec<u8> {
+        let material = UnlitMaterial { _pad0: 0.0, _pad1: 0.0, _pad2: 0.0, _pad3: 0.0 };
         bytemuck::bytes_of(&material).to_vec()
     }
 }

@@ -74,7 +74,7 @@ fn every_picture_can_be_drawn() {
 }
 
 #[test]
-fn every_parameter_that_is_drawn_is_in_the_manual_and_no_other() {
+fn every_parameter_is_in_the_manual() {
     let house = House::new();
     let text = manual(&house.catalog());
     let sections = SECTIONS.iter().map(|section| (section.key, section.params));
@@ -82,11 +82,11 @@ fn every_parameter_that_is_drawn_is_in_the_manual_and_no_other() {
     for (group, params) in sections.chain(shaders) {
         for param in params {
             let heading = format!("### {group}: `{}`\n\n{}\n\n{}\n", param.name, param.doc, param.facts());
-            assert_eq!(text.contains(&heading), param.drawn, "{heading}");
+            assert!(text.contains(&heading), "{heading}");
         }
     }
     for entry in &house.0 {
         let titles = [format!("## Shader `{}`\n", entry.name), format!("## Post effect `{}`\n", entry.name)];
-        assert_eq!(titles.iter().any(|title| text.contains(title)), entry.drawn, "{}", entry.name);
+        assert!(titles.iter().any(|title| text.contains(title)), "{}", entry.name);
     }
 }

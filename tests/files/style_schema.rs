@@ -529,16 +529,11 @@ fn everything(house: &House) -> String {
         });
         examples.collect::<Vec<_>>().join(", ")
     };
-    let sections =
-        SECTIONS.iter().filter(|section| section.is_drawn() && section.key != "transparency").map(|section| {
-            let object = format!("{{ {} }}", members(section.params));
-            if section.is_list {
-                format!("{:?}: [{object}]", section.key)
-            } else {
-                format!("{:?}: {object}", section.key)
-            }
-        });
-    let drawn = house.0.iter().filter(|entry| entry.drawn);
+    let sections = SECTIONS.iter().filter(|section| section.key != "transparency").map(|section| {
+        let object = format!("{{ {} }}", members(section.params));
+        if section.is_list { format!("{:?}: [{object}]", section.key) } else { format!("{:?}: {object}", section.key) }
+    });
+    let drawn = house.0.iter();
     let shaders = drawn.map(|entry| {
         format!(
             "{{ \"name\": \"my {0}\", \"shader\": {0:?}, \"properties\": {{ {1} }} }}",
@@ -665,14 +660,13 @@ fn every_parameter_is_in_the_schema_with_its_default_and_range() {
                 let of_items = found["anyOf"][0]["items"].get("minimum").and_then(Value::as_f64);
                 assert!(lowest.is_none() || lowest == of_items, "{name}: its range is lost");
             }
-            assert_eq!(found.get("deprecationMessage").is_some(), !param.drawn, "{name}");
         }
     };
     for section in SECTIONS {
         let items = if section.is_list { "/items" } else { "" };
         check(&format!("/properties/{}{items}", section.key), section.params);
     }
-    for entry in house.0.iter().filter(|entry| entry.drawn) {
+    for entry in house.0.iter() {
         check(&format!("/definitions/{}_properties", entry.name), entry.params);
     }
 }

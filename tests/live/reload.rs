@@ -151,11 +151,28 @@ fn files_beside_the_scene_are_followed_once_it_names_them() {
     live.write("m.side", "second");
     assert_eq!(live.taken(), Part::Scene);
     assert_eq!(live.engine.scene().map(|scene| scene.name.as_str()), Some("second"));
-    std::fs::remove_file(live.path("m.side")).unwrap();
+    fs::remove_file(live.path("m.side")).unwrap();
     assert_eq!(live.taken(), Part::Scene);
+    // Events come in order: what the files of the scene had to tell came before this, however late.
+    live.write("s.json", &ground(BLUE));
+    assert_eq!(live.taken(), Part::Style);
     live.silent();
     live.write("m.side", "third");
     live.silent();
+}
+
+#[test]
+fn a_save_that_was_read_is_not_read_once_more() {
+    let Some(mut live) = red("read-once") else { return };
+    live.write("m.xyz", "1\n\nC 0 0 0\n");
+    assert_eq!(live.taken(), Part::Scene);
+    // The last events of the save.
+    live.silent();
+    let reads = live.scene_reads();
+    // Longer than the time between two looks at the files.
+    live.silent();
+    live.silent();
+    assert_eq!(live.scene_reads(), reads);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use restyle::config::{self, Catalog, Source};
@@ -18,6 +19,8 @@ pub const SILENCE: Duration = Duration::from_millis(600);
 pub struct Live {
     pub folder: PathBuf,
     pub engine: Engine,
+    /// How often the scene was read.
+    reads: Arc<AtomicUsize>,
 }
 
 pub fn load_style(path: &Path) -> Result<config::Style, config::Mistakes> {
@@ -45,12 +48,15 @@ impl Live {
         for (file, text) in files {
             std::fs::write(folder.join(file), text).unwrap();
         }
+        let reads = Arc::new(AtomicUsize::new(0));
+        let counted = Arc::clone(&reads);
         let (style, scene) = (folder.join("s.json"), folder.join("m.xyz"));
         let sources = Sources {
             style_file: Some(style.clone()),
             style: Box::new(move || load_style(&style)),
             scene_files: vec![scene.clone()],
             scene: Box::new(move || {
+                counted.fetch_add(1, Ordering::Relaxed);
                 let mut loaded = Scene::load_with(&scene, &LoadOptions::default())?;
                 // Stands for a file of materials that a mesh names.
                 let beside = scene.with_extension("side");
@@ -62,7 +68,7 @@ impl Live {
             }),
             shader_folder: Some(folder.join("shaders")),
         };
-        Live { engine: Engine::live(gpu, sources), folder }
+        Live { engine: Engine::live(gpu, sources), folder, reads }
     }
 
     pub fn path(&self, name: &str) -> PathBuf {
@@ -71,6 +77,11 @@ impl Live {
 
     pub fn write(&self, name: &str, text: &str) {
         std::fs::write(self.path(name), text).unwrap();
+    }
+
+    /// How often the scene was read until now.
+    pub fn scene_reads(&self) -> usize {
+        self.reads.load(Ordering::Relaxed)
     }
 
     /// Waits until something is taken, and draws it.

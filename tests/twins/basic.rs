@@ -87,7 +87,7 @@ pub fn basic_shade(scene: &Scene, s: &Surface, m: &BasicMaterial) -> Vec3 {
 
 /// An opaque material; `stops` is the exposure.
 pub fn material(smoothness: f32, metallic: f32, stops: f32) -> BasicMaterial {
-    BasicMaterial::new(smoothness, metallic, 1.0, stops.exp2())
+    BasicMaterial::new(smoothness, metallic, stops.exp2())
 }
 
 fn facing(base_color: Vec3) -> Surface {

@@ -14,11 +14,11 @@ use restyle::shipped::{MESHES, MOLECULES, find};
 
 use super::{gpu, layers};
 
-const EMPTY: u32 = u32::MAX;
+pub const EMPTY: u32 = u32::MAX;
 const DEPTH_STEPS: f64 = 65534.0;
 
 /// Keys as the k-buffer keeps them: each slot the smaller one, the larger goes on; equal ones are one.
-fn insert(slots: &mut [u32], mut key: u32) {
+pub fn insert(slots: &mut [u32], mut key: u32) {
     for slot in slots {
         let former = *slot;
         *slot = former.min(key);
@@ -77,7 +77,7 @@ fn query(b: &[u32], shape: u32) -> std::ops::Range<usize> {
 }
 
 /// What the device multiplies and adds, in its precision.
-fn stored_depth(band: &BkbBand, t: f32) -> u32 {
+pub fn stored_depth(band: &BkbBand, t: f32) -> u32 {
     (((t - band.near) * band.depth_scale).clamp(0.0, DEPTH_STEPS as f32) + 0.5) as u32
 }
 
@@ -297,7 +297,7 @@ fn words(engine: &mut Engine, size: [u32; 2]) -> BkbWords {
 }
 
 /// Numbers in no order.
-fn shuffled(count: u32, salt: u32) -> Vec<u32> {
+pub fn shuffled(count: u32, salt: u32) -> Vec<u32> {
     let mut all: Vec<u32> = (0..count).collect();
     all.sort_by_key(|index| (index ^ salt).wrapping_mul(2_654_435_761).rotate_left(13));
     all

@@ -107,7 +107,6 @@ pub fn material((scale, bias, exponent, steps): Bands) -> ToonMaterial {
         bias,
         exponent,
         steps,
-        opacity: 1.0,
         specular_limit: 0.95,
         top: (scale + bias).powf(exponent),
         ..bytemuck::Zeroable::zeroed()

@@ -23,7 +23,7 @@ fn unpack_linear([red_green, blue]: [u32; 2]) -> Vec3 {
 
 /// The bytes of a picture that shows this colour.
 fn drawn(base_color: Vec3) -> [u8; 3] {
-    let material = UnlitMaterial { opacity: 1.0, _pad0: 0.0, _pad1: 0.0, _pad2: 0.0 };
+    let material = UnlitMaterial { _pad0: 0.0, _pad1: 0.0, _pad2: 0.0, _pad3: 0.0 };
     srgb_from_linear(unlit_shade(base_color, &material)).to_array().map(|channel| (channel * 255.0).round() as u8)
 }
 

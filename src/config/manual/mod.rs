@@ -22,14 +22,14 @@ pub fn manual(catalog: &Catalog<'_>) -> String {
     let mut text = include_str!("intro.md").to_owned();
     text.push_str(&selectors(catalog));
     let strips = strips(catalog);
-    for section in SECTIONS.iter().filter(|section| section.is_drawn()) {
+    for section in SECTIONS.iter() {
         let each = if section.is_list { " Each light has these keys:" } else { "" };
         let _ = write!(text, "\n## `{}`\n\n{}{each}\n", section.key, section.doc);
         parameters(&mut text, section.key, section.params, &strips);
     }
     for role in [Role::Object, Role::PostEffect] {
         let title = if role == Role::Object { "Shader" } else { "Post effect" };
-        for entry in catalog.shaders.iter().filter(|entry| entry.drawn && entry.role == role) {
+        for entry in catalog.shaders.iter().filter(|entry| entry.role == role) {
             let _ = write!(text, "\n## {title} `{}`\n\n{}\n", entry.name, entry.doc);
             parameters(&mut text, entry.name, entry.params, &strips);
         }
@@ -38,7 +38,7 @@ pub fn manual(catalog: &Catalog<'_>) -> String {
 }
 
 fn parameters(text: &mut String, group: &str, params: &[Param], strips: &[Strip]) {
-    for param in params.iter().filter(|param| param.drawn) {
+    for param in params {
         let _ = write!(text, "\n### {group}: `{}`\n\n{}\n\n{}\n", param.name, param.doc, param.facts());
         if let Some(strip) = strips.iter().find(|strip| strip.group == group && strip.param == param.name) {
             let shown = format!("Left to right: `{}`", param.examples.join("`, `"));

@@ -366,12 +366,10 @@ fn base() -> Value {
 /// Every strip of the manual, in its order.
 pub fn strips(catalog: &Catalog<'_>) -> Vec<Strip> {
     let sections = SECTIONS.iter().map(|section| (section.key, section.params));
-    let shaders = catalog.shaders.iter().filter(|entry| entry.drawn);
-    let groups = sections.chain(shaders.map(|entry| (entry.name, entry.params)));
+    let groups = sections.chain(catalog.shaders.iter().map(|entry| (entry.name, entry.params)));
     let all = groups.flat_map(|(group, params)| params.iter().map(move |param| (group, param)));
-    let is_effect = |group: &str| catalog.get(group).is_some_and(|entry| entry.drawn && entry.role == Role::PostEffect);
-    let seen = all
-        .filter(|(group, param)| param.drawn && !param.examples.is_empty() && !UNSEEN.contains(&(group, param.name)));
+    let is_effect = |group: &str| catalog.get(group).is_some_and(|entry| entry.role == Role::PostEffect);
+    let seen = all.filter(|(group, param)| !param.examples.is_empty() && !UNSEEN.contains(&(group, param.name)));
     seen.map(|(group, param)| strip(group, is_effect(group), param)).collect()
 }
 

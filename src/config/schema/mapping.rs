@@ -119,7 +119,7 @@ fn post_effects(catalog: &Catalog<'_>) -> Value {
         "description": "Post effects, in the order in which they change the picture.",
         "items": named(catalog, Role::PostEffect, &["string"]),
     });
-    if catalog.drawn_names(Some(Role::PostEffect)).next().is_none() {
+    if catalog.names(Some(Role::PostEffect)).next().is_none() {
         schema["doNotSuggest"] = true.into();
     }
     schema
@@ -128,10 +128,8 @@ fn post_effects(catalog: &Catalog<'_>) -> Value {
 /// A name of one role. Any text may be one: what the file calls its shaders, no schema can know.
 fn named(catalog: &Catalog<'_>, role: Role, types: &[&str]) -> Value {
     let of_role = || catalog.shaders.iter().filter(|entry| entry.role == role);
-    let drawn = || of_role().filter(|entry| entry.drawn);
-    let names: Vec<&str> = drawn().map(|entry| entry.name).collect();
-    let docs: Vec<&str> = drawn().map(|entry| entry.doc).collect();
-    let not_drawn = of_role().filter(|entry| !entry.drawn).map(|entry| entry.name);
+    let names: Vec<&str> = of_role().map(|entry| entry.name).collect();
+    let docs: Vec<&str> = of_role().map(|entry| entry.doc).collect();
     let known = json!({ "enum": names, "enumDescriptions": docs });
     let mut alternatives = vec![json!({})];
     if !names.is_empty() {
@@ -140,7 +138,5 @@ fn named(catalog: &Catalog<'_>, role: Role, types: &[&str]) -> Value {
     json!({
         "type": types,
         "anyOf": alternatives,
-        "if": { "type": "string", "pattern": patterns::one_of(not_drawn) },
-        "then": { "deprecationMessage": NOT_DRAWN },
     })
 }

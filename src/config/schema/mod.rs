@@ -4,7 +4,7 @@
 //! mistakes while a designer types. Whatever it refuses, the loader refuses too. The loader refuses more, such as names
 //! that refer to nothing: a test holds the list of what only it can know.
 //!
-//! What this version does not draw is accepted, as it is in files, but never suggested, and marked as not drawn.
+//! Types of objects that this version does not draw are accepted, as they are in files, but never suggested, and marked as not drawn.
 //! Some keywords are of VS Code's language server alone: `markdownDescription`, `defaultSnippets`, `doNotSuggest`,
 //! `deprecationMessage`, `patternErrorMessage`, `errorMessage`, `allowComments`, `allowTrailingCommas`.
 
@@ -15,10 +15,9 @@ mod snippets;
 
 use serde_json::{Map, Value, json};
 
-use super::catalog::{Catalog, CatalogEntry, Role};
+use super::catalog::{Catalog, CatalogEntry};
 use super::param::Param;
 use super::sections::{SECTIONS, Section};
-use super::shaders::SHARED;
 use super::style::VERSION;
 
 /// The name of the schema: what tells it from any other file.
@@ -65,7 +64,7 @@ pub fn schema(catalog: &Catalog<'_>) -> Value {
     definitions.insert("target".to_owned(), mapping::target(catalog));
     definitions.insert("selector".to_owned(), mapping::selector(catalog));
     for entry in catalog.shaders {
-        definitions.insert(format!("{}_properties", entry.name), properties_of(catalog, entry));
+        definitions.insert(format!("{}_properties", entry.name), properties_of(entry));
     }
     json!({
         "$schema": "http://json-schema.org/draft-07/schema#",
@@ -101,23 +100,19 @@ fn of_section(section: &Section) -> Value {
         table
     };
     schema["description"] = section.doc.into();
-    if !section.is_drawn() {
-        schema["deprecationMessage"] = format!("{:?} is {NOT_DRAWN}: it changes nothing", section.key).into();
-    }
     schema
 }
 
 /// The list `shaders`.
 fn shaders(catalog: &Catalog<'_>) -> Value {
-    let (drawn, not_drawn): (Vec<&CatalogEntry>, Vec<_>) = catalog.shaders.iter().partition(|entry| entry.drawn);
-    let names: Vec<&str> = drawn.iter().map(|entry| entry.name).collect();
-    let docs: Vec<&str> = drawn.iter().map(|entry| entry.doc).collect();
+    let names: Vec<&str> = catalog.names(None).collect();
+    let docs: Vec<&str> = catalog.shaders.iter().map(|entry| entry.doc).collect();
     let mut by_shader: Vec<Value> = catalog.shaders.iter().map(for_shader).collect();
     // No shader of its own: whose properties they are, only the base knows.
-    let described: Map<String, Value> = drawn
+    let described: Map<String, Value> = catalog
+        .shaders
         .iter()
         .flat_map(|entry| entry.params)
-        .filter(|param| param.drawn)
         .map(|param| (param.name.to_owned(), json!({ "description": param.doc })))
         .collect();
     by_shader.push(json!({
@@ -135,10 +130,8 @@ fn shaders(catalog: &Catalog<'_>) -> Value {
                 "shader": {
                     "type": "string",
                     "description": "What draws.",
-                    "anyOf": [
-                        { "enum": names, "enumDescriptions": docs },
-                        { "pattern": patterns::one_of(not_drawn.iter().map(|entry| entry.name)) },
-                    ],
+                    "enum": names,
+                    "enumDescriptions": docs,
                 },
                 "properties": { "type": "object", "description": "What differs from the shader's defaults." },
             },
@@ -152,27 +145,16 @@ fn shaders(catalog: &Catalog<'_>) -> Value {
 /// Chooses the properties of an entry by its shader. A pattern and not a `const`: an editor would suggest that.
 fn for_shader(entry: &CatalogEntry) -> Value {
     let properties = json!({ "$ref": format!("#/definitions/{}_properties", entry.name) });
-    let mut then = json!({ "properties": properties });
-    if !entry.drawn {
-        let message = format!("{:?} is {NOT_DRAWN}", entry.name);
-        then["shader"] = json!({ "doNotSuggest": true, "deprecationMessage": message });
-    }
     let shader = json!({ "doNotSuggest": true, "pattern": patterns::one_of([entry.name]) });
     json!({
         "if": { "properties": { "shader": shader }, "required": ["shader"] },
-        "then": { "properties": then },
+        "then": { "properties": { "properties": properties } },
     })
 }
 
-/// What `properties` of a shader may hold. Of one that is not drawn, only what is known already, or its stand-in shares.
-fn properties_of(catalog: &Catalog<'_>, entry: &CatalogEntry) -> Value {
-    if entry.drawn {
-        let mut schema = table(entry.params);
-        schema["description"] = format!("What differs from the defaults of {}. {}", entry.name, entry.doc).into();
-        return schema;
-    }
-    let shared = catalog.basic().params.iter().filter(|p| entry.role == Role::Object && SHARED.contains(&p.name));
-    let own = entry.params.iter();
-    let properties: Map<String, Value> = shared.chain(own).map(|p| (p.name.to_owned(), param::param(p))).collect();
-    json!({ "type": "object", "properties": properties })
+/// What `properties` of a shader may hold.
+fn properties_of(entry: &CatalogEntry) -> Value {
+    let mut schema = table(entry.params);
+    schema["description"] = format!("What differs from the defaults of {}. {}", entry.name, entry.doc).into();
+    schema
 }

@@ -3,7 +3,7 @@
 
 use serde_json::{Map, Number, Value, json};
 
-use super::{NOT_DRAWN, patterns, snippets};
+use super::{patterns, snippets};
 use crate::config::color::BaseColor;
 use crate::config::param::{Default, Kind, LARGEST, Param};
 use crate::config::transfer::{MAX_POINTS, TransferKind};
@@ -60,9 +60,6 @@ pub(super) fn param(param: &Param) -> Value {
     let takes_words = matches!(param.kind, Kind::Choice(_) | Kind::Boolean);
     if !param.examples.is_empty() && !takes_words {
         put("examples", param.examples.iter().map(|text| example(text)).collect());
-    }
-    if !param.drawn {
-        put("deprecationMessage", format!("{:?} is {NOT_DRAWN}: it changes nothing", param.name).into());
     }
     let (lowest, highest) = param.range.unwrap_or((-LARGEST, LARGEST));
     let bounds = [("minimum", lowest.max(-LARGEST)), ("maximum", highest.min(LARGEST))];

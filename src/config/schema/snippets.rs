@@ -24,11 +24,11 @@ pub(super) fn whole_style() -> Value {
     })
 }
 
-/// An entry of `shaders` for each shader that is drawn, with its first property as it is by default.
+/// An entry of `shaders` for each shader, with its first property as it is by default.
 pub(super) fn shaders(catalog: &Catalog<'_>) -> Value {
-    let of = |role| catalog.shaders.iter().filter(move |entry| entry.drawn && entry.role == role);
+    let of = |role| catalog.shaders.iter().filter(move |entry| entry.role == role);
     let entries = of(Role::Object).chain(of(Role::PostEffect)).map(|entry| {
-        let first = entry.params.iter().find(|param| param.drawn);
+        let first = entry.params.first();
         let properties: Map<String, Value> =
             first.into_iter().map(|param| (param.name.to_owned(), default(param))).collect();
         json!({

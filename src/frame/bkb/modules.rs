@@ -164,6 +164,7 @@ pub fn blend_module(key: &BkbKey) -> Module {
     let finish = format!("{}\nconst FINISH: u32 = {}u;", form_constants(key.form), key.finish.number());
     module.add_generated("bkb options", finish);
     module.add(wgsl!("lib/finish.wgsl"));
+    module.add(wgsl!("lib/fullscreen.wgsl"));
     module.add(wgsl!("bkb/blend.wgsl"));
     module
 }

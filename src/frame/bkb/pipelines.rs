@@ -79,7 +79,7 @@ impl Pipelines {
             gpu,
             "bkb blend",
             &module,
-            ["slots_vertex", "blend_slots"],
+            "blend_slots",
             &[&visibility.layout, &shade_layout, &layout],
             &[post::target_of(gpu, key.finish)],
         )?;

@@ -2,6 +2,7 @@
 
 mod curvature;
 mod dof;
+mod failures;
 mod fig10;
 mod geometry;
 mod hidden;
@@ -29,6 +30,7 @@ pub const EXPERIMENTS: &[&dyn Experiment] = &[
     &orbit::Orbit,
     &transparency::Transparency,
     &curvature::Curvature,
+    &failures::Failures,
     &hidden::Hidden,
     &fig10::Fig10,
 ];

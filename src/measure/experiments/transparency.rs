@@ -1,4 +1,4 @@
-//! `transparency`: how exact layers are and what they cost, by opacity and by what is seen through.
+//! `transparency`: how exact lists and the k-buffer are and what they cost, by opacity, by k and by what is seen through.
 
 use std::fmt::Write as _;
 use std::rc::Rc;
@@ -17,12 +17,20 @@ const SIZE: [u32; 2] = [256, 256];
 /// Squares across the whole picture.
 const SQUARES: usize = 32;
 
-const OPACITIES: [f64; 4] = [0.005, 0.1, 0.4, 0.8];
-const OPACITIES_THOROUGH: [f64; 9] = [0.005, 0.02, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 0.95];
+const OPACITIES: [f64; 5] = [0.005, 0.1, 0.4, 0.8, 1.0];
+const OPACITIES_THOROUGH: [f64; 10] = [0.005, 0.02, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0];
+
+/// Fragments that the k-buffer keeps for each pixel.
+const KS: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
+/// Where the k-buffer draws in an ordinary run: with many layers that count, and with few.
+const BUFFERS: [(&str, f64); 2] = [("32 squares", 0.1), ("assembly", 0.4)];
+
+/// Bits of depth by which each method sorts.
+const DEPTH_BITS: [(&str, u32); 2] = [("packed", 32), ("bkb", 16)];
 
 /// Figures: the largest error of any channel in linear light, and the share of pixels with more than a step of 8 bits.
-const LARGEST: &str = "largest error, linear";
-const WRONG: &str = "pixels off by more than 1/255, %";
+pub(super) const LARGEST: &str = "largest error, linear";
+pub(super) const WRONG: &str = "pixels off by more than 1/255, %";
 
 /// A scene, how it is looked at, and how its atoms are drawn.
 struct Stand {
@@ -64,18 +72,21 @@ fn squares() -> Result<Scene, MeasureError> {
     scene("squares.obj", text.as_bytes())
 }
 
-fn look(stand: &Stand, opacity: f64) -> Result<Look, MeasureError> {
+/// A stand in one opacity; with a k, drawn by the k-buffer.
+fn look(stand: &Stand, opacity: f64, k: Option<usize>) -> Result<Look, MeasureError> {
+    let method = k.map_or(r#""method": "packed""#.to_owned(), |k| format!(r#""method": "bkb", "k": {k}"#));
     let text = format!(
         r##"{{ "camera": {{ "bgcolor": "#f4ead0", {} }}, "geometry": {{ "atom": "vdw", "scale": {} }},
               "mapping": {{ "*": "glass", "mesh[part=part0]": "other", "atom": "other" }},
               "shaders": [{{ "name": "glass", "shader": "unlit", "properties": {{ "base_color": "#2060d0", "opacity": {opacity} }} }},
-                {{ "name": "other", "shader": "unlit", "properties": {{ "base_color": "#d05020", "opacity": {opacity} }} }}] }}"##,
+                {{ "name": "other", "shader": "unlit", "properties": {{ "base_color": "#d05020", "opacity": {opacity} }} }}],
+              "transparency": {{ {method} }} }}"##,
         stand.camera, stand.scale
     );
-    Look::of_text(&format!("{} {opacity}", stand.name), &text)
+    Look::of_text(&format!("{} {opacity} {k:?}", stand.name), &text)
 }
 
-fn judge() -> Judge {
+pub(super) fn judge() -> Judge {
     Rc::new(|truth, picture| {
         let (mut largest, mut wrong, mut count) = (0.0f64, 0usize, 0usize);
         for (x, y) in (0..truth.size[1]).flat_map(|y| (0..truth.size[0]).map(move |x| (x, y))) {
@@ -96,7 +107,7 @@ impl Experiment for Transparency {
     }
 
     fn doc(&self) -> &'static str {
-        "How far layers of what is transparent are from crossing every surface exactly, by opacity, on four scenes, and their cost."
+        "How far lists of all fragments and the k-buffer are from crossing every surface exactly, by opacity and by k, on four scenes, and their cost."
     }
 
     fn chart(&self) -> ChartKind {
@@ -113,24 +124,65 @@ impl Experiment for Transparency {
                 "The squares are those of Fig. 10 of Murray 2016: {SQUARES} across the whole picture, at depths in no order. On the border of an \
                  object rounding decides whether a pixel sees it, and which of two faces at one place is the nearer."
             ),
+            "Lists (packed) sort by 32 bits of depth, the k-buffer (bkb, after Murray 2016) by 16, and that keeps k fragments a pixel and opacity in \
+             steps of 1/255. Bytes are those of objects and targets."
+                .to_owned(),
         ]
     }
 
     fn says(&self, rows: &[Row]) -> String {
         let figure = |row: &Row, name: &str| row.figure(name).unwrap_or(f64::NAN);
-        let of = |scene: &'static str| rows.iter().filter(move |row| row.entry.scene == scene);
+        let of = |scene: &'static str| {
+            rows.iter().filter(move |row| row.entry.scene == scene && row.entry.method == "packed")
+        };
         let most = |scene: &'static str, name: &'static str| of(scene).map(|row| figure(row, name)).fold(0.0, f64::max);
         let wrong = STANDS.iter().map(|stand| most(stand.name, WRONG)).fold(0.0, f64::max);
-        let times: Vec<f64> = of(STANDS[0].name).map(Row::median_ms).collect();
+        // What is opaque has no layers.
+        let has_layers = |row: &&Row| row.entry.settings["opacity"] != 1.0;
+        let times: Vec<f64> = of(STANDS[0].name).filter(has_layers).map(Row::median_ms).collect();
         let [quick, slow] = [f64::min, f64::max].map(|choose| times.iter().copied().fold(f64::NAN, choose));
         format!(
-            "On the squares the largest error is {} in linear light; on objects at most {} % of the pixels are off by more than a step of \
+            "On the squares the largest error of lists is {} in linear light; on objects at most {} % of the pixels are off by more than a step of \
              8 bits. {SQUARES} layers take from {} ms, where little light comes through, to {} ms.",
             short(most(STANDS[0].name, LARGEST)),
             short(wrong),
             short(quick),
             short(slow),
         )
+    }
+
+    fn findings(&self, rows: &[Row]) -> Vec<String> {
+        let figure = |row: &Row, name: &str| row.figure(name).unwrap_or(f64::NAN);
+        let cost = |row: &Row| {
+            let megabytes = row.bytes as f64 / 1e6;
+            format!(
+                "{} ({} %) in {} ms and {} MB",
+                short(figure(row, LARGEST)),
+                short(figure(row, WRONG)),
+                short(row.median_ms()),
+                short(megabytes)
+            )
+        };
+        let same = |a: &Row, b: &Row| {
+            a.entry.scene == b.entry.scene && a.entry.settings["opacity"] == b.entry.settings["opacity"]
+        };
+        let mut found = Vec::new();
+        for lists in rows.iter().filter(|row| row.entry.method == "packed") {
+            let buffers: Vec<&Row> = rows.iter().filter(|row| row.entry.method == "bkb" && same(row, lists)).collect();
+            if buffers.is_empty() {
+                continue;
+            }
+            let each: Vec<String> =
+                buffers.iter().map(|row| format!("k = {}: {}", row.entry.settings["k"], cost(row))).collect();
+            found.push(format!(
+                "{}, opacity {}: largest error and pixels off by more than 1/255; lists: {}; {}.",
+                lists.entry.scene,
+                lists.entry.settings["opacity"],
+                cost(lists),
+                each.join("; ")
+            ));
+        }
+        found
     }
 
     fn cases(&self, setup: &Setup) -> Result<Vec<Case>, MeasureError> {
@@ -143,22 +195,30 @@ impl Experiment for Transparency {
             let scene = (stand.load)()?;
             let stage = Stage::new(gpu, scene.clone());
             for &opacity in opacities {
-                let look = look(stand, opacity)?;
-                cases.push(Case {
-                    entry: Entry {
-                        scene: stand.name.to_owned(),
-                        method: "packed".to_owned(),
-                        settings: settings(json!({ "opacity": opacity })),
-                        series: stand.name.to_owned(),
-                        point: opacity.to_string(),
-                        extent: opacity,
-                        is_published: false,
-                        size,
-                    },
-                    subject: Box::new(stage.frame(&look, request)),
-                    truth: Some(look.exact(&scene, request)),
-                    judge: Some(judge()),
-                });
+                let truth = look(stand, opacity, None)?.exact(&scene, request);
+                let has_buffer = opacity < 1.0 && (setup.thorough || BUFFERS.contains(&(stand.name, opacity)));
+                let buffers = KS.into_iter().map(Some).filter(|_| has_buffer);
+                for k in std::iter::once(None).chain(buffers) {
+                    let (method, depth_bits) = DEPTH_BITS[usize::from(k.is_some())];
+                    let of_lists = json!({ "opacity": opacity, "depth_bits": depth_bits });
+                    let of_buffer = json!({ "opacity": opacity, "k": k, "depth_bits": depth_bits });
+                    let series = k.map_or(stand.name.to_owned(), |_| format!("{}, bkb, {opacity}", stand.name));
+                    cases.push(Case {
+                        entry: Entry {
+                            scene: stand.name.to_owned(),
+                            method: method.to_owned(),
+                            settings: settings(if k.is_some() { of_buffer } else { of_lists }),
+                            series,
+                            point: k.map_or(opacity.to_string(), |k| format!("k = {k}")),
+                            extent: k.map_or(opacity, |k| k as f64),
+                            is_published: k.is_some(),
+                            size,
+                        },
+                        subject: Box::new(stage.frame(&look(stand, opacity, k)?, request)),
+                        truth: Some(Rc::clone(&truth)),
+                        judge: Some(judge()),
+                    });
+                }
             }
         }
         Ok(cases)
@@ -173,7 +233,7 @@ mod tests {
     fn scenes_and_styles_load() {
         for stand in &STANDS {
             (stand.load)().unwrap_or_else(|error| panic!("{}: {error}", stand.name));
-            look(stand, 0.5).unwrap_or_else(|error| panic!("{}: {error}", stand.name));
+            look(stand, 0.5, Some(8)).unwrap_or_else(|error| panic!("{}: {error}", stand.name));
         }
     }
 }

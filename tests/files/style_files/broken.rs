@@ -2,10 +2,10 @@
 
 use restyle::config::{Source, load};
 
-use super::catalog::EARLY;
+use super::catalog::CATALOG;
 
 fn messages(style: &str) -> String {
-    match load(&Source::new("s.json", style), &EARLY) {
+    match load(&Source::new("s.json", style), &CATALOG) {
         Ok(_) => panic!("this style loads, but should not: {style}"),
         Err(mistakes) => mistakes.to_string(),
     }
@@ -163,7 +163,7 @@ s.json:1:35 (lights[1]): "light" must be an object, not the number 7"#,
     ),
     (
         r#"{ "mapping": { "atom": "tune" } }"#,
-        r#"s.json:1:24 (mapping.atom): no shader is called "tune"; allowed: basic, toon, unlit"#,
+        r#"s.json:1:24 (mapping.atom): no shader is called "tune"; allowed: basic, toon, unlit, curvature"#,
     ),
     (
         r#"{ "mapping": { "atom": 3 } }"#,
@@ -171,7 +171,7 @@ s.json:1:35 (lights[1]): "light" must be an object, not the number 7"#,
     ),
     (
         r#"{ "mapping": { "atom": "dofPost" } }"#,
-        r#"s.json:1:24 (mapping.atom): "dofPost" is a post effect, not a shader of objects: list it in mapping.post_effects; allowed: basic, toon, unlit"#,
+        r#"s.json:1:24 (mapping.atom): "dofPost" is a post effect, not a shader of objects: list it in mapping.post_effects; allowed: basic, toon, unlit, curvature"#,
     ),
     (
         r#"{ "mapping": { "post_effects": "dofPost" } }"#,
@@ -179,16 +179,16 @@ s.json:1:35 (lights[1]): "light" must be an object, not the number 7"#,
     ),
     (
         r#"{ "mapping": { "post_effects": ["toon"] } }"#,
-        r#"s.json:1:33 (mapping.post_effects[0]): "toon" is a shader of objects, not a post effect"#,
+        r#"s.json:1:33 (mapping.post_effects[0]): "toon" is a shader of objects, not a post effect; allowed: ssaoPost, dofPost, outlinePost"#,
     ),
     (
         r#"{ "mapping": { "post_effects": ["ssao", null] } }"#,
-        r#"s.json:1:33 (mapping.post_effects[0]): no post effect is called "ssao"; did you mean "ssaoPost"?
+        r#"s.json:1:33 (mapping.post_effects[0]): no post effect is called "ssao"; did you mean "ssaoPost"? allowed: ssaoPost, dofPost, outlinePost
 s.json:1:41 (mapping.post_effects[1]): "post_effects" must be a list of names of post effects, not null"#,
     ),
     (
         r#"{ "mapping": { "atom": "flat" }, "shaders": [{ "name": "flta", "shader": "toon" }] }"#,
-        r#"s.json:1:24 (mapping.atom): no shader is called "flat"; did you mean "flta"? allowed: flta, basic, toon, unlit"#,
+        r#"s.json:1:24 (mapping.atom): no shader is called "flat"; did you mean "flta"? allowed: flta, basic, toon, unlit, curvature"#,
     ),
     (
         r#"{ "shaders": {} }"#,
@@ -209,7 +209,7 @@ s.json:1:17 (shaders[0].lights): a shader entry has no "lights": it belongs at t
     ),
     (
         r#"{ "shaders": [{ "name": "a" }] }"#,
-        r#"s.json:1:15 (shaders[0]): this shader entry needs "shader": add it; allowed: basic, toon, unlit"#,
+        r#"s.json:1:15 (shaders[0]): this shader entry needs "shader": add it; allowed: basic, toon, unlit, curvature, ssaoPost, dofPost, outlinePost"#,
     ),
     (
         r#"{ "shaders": [{ "shader": "toon" }] }"#,
@@ -217,7 +217,7 @@ s.json:1:17 (shaders[0].lights): a shader entry has no "lights": it belongs at t
     ),
     (
         r#"{ "shaders": [{ "name": "a", "shader": "tone" }] }"#,
-        r#"s.json:1:40 (shaders[0].shader): no shader is called "tone"; did you mean "toon"? allowed: basic, toon, unlit"#,
+        r#"s.json:1:40 (shaders[0].shader): no shader is called "tone"; did you mean "toon"? allowed: basic, toon, unlit, curvature, ssaoPost, dofPost, outlinePost"#,
     ),
     (
         r#"{ "shaders": [{ "name": "a", "shader": "toon", "propertys": {} }] }"#,
@@ -261,7 +261,7 @@ s.json:1:17 (shaders[0].lights): a shader entry has no "lights": it belongs at t
     ),
     (
         r#"{ "shaders": [{ "name": "e", "shader": "ssaoPost" }], "mapping": { "*": "e" } }"#,
-        r#"s.json:1:73 (mapping.*): "e" is a post effect, not a shader of objects: list it in mapping.post_effects; allowed: basic, toon, unlit"#,
+        r#"s.json:1:73 (mapping.*): "e" is a post effect, not a shader of objects: list it in mapping.post_effects; allowed: basic, toon, unlit, curvature"#,
     ),
     (
         r#"{ "extends": 3 }"#,
@@ -347,7 +347,7 @@ on" } }"#,
         r#"s.json:1:22 (camera.fov): "fov" is 0, but must lie in 1 to 150 degrees
 s.json:1:33 (camera.zoom): "zoom" is 0, but must lie in 0.01 to 1000
 s.json:2:29 (lights[0].intensity): "intensity" is -1, but must lie in 0 to 1000
-s.json:3:24 (mapping.atom): no shader is called "x"; allowed: basic, toon, unlit"#,
+s.json:3:24 (mapping.atom): no shader is called "x"; allowed: basic, toon, unlit, curvature"#,
     ),
     (
         r#"{"a":[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]}"#,
@@ -364,7 +364,7 @@ s.json:1:69: lists and objects are nested deeper than 64 levels"#,
     ),
     (
         r#"{ "shaders": [{ "name": "a", "shader": "curvatur" }] }"#,
-        r#"s.json:1:40 (shaders[0].shader): no shader is called "curvatur"; did you mean "curvature"? allowed: basic, toon, unlit"#,
+        r#"s.json:1:40 (shaders[0].shader): no shader is called "curvatur"; did you mean "curvature"? allowed: basic, toon, unlit, curvature, ssaoPost, dofPost, outlinePost"#,
     ),
     (
         r#"{ "camera": { "fov": nul } }"#,
@@ -372,7 +372,7 @@ s.json:1:69: lists and objects are nested deeper than 64 levels"#,
     ),
     (
         r#"{ "mapping": { "post_effects": ["toon"] }, "shaders": [{ "name": "soft", "shader": "ssaoPost" }] }"#,
-        r#"s.json:1:33 (mapping.post_effects[0]): "toon" is a shader of objects, not a post effect; allowed: soft"#,
+        r#"s.json:1:33 (mapping.post_effects[0]): "toon" is a shader of objects, not a post effect; allowed: soft, ssaoPost, dofPost, outlinePost"#,
     ),
     (
         r#"{ "camera": { "fov" 30 } }"#,
@@ -383,7 +383,7 @@ s.json:1:69: lists and objects are nested deeper than 64 levels"#,
 #[test]
 fn a_place_points_at_the_bytes() {
     let style = "\u{feff}{ /* \u{e9} */ \"camera\": { \"fov\": 0 } }";
-    let mistakes = load(&Source::new("s.json", style), &EARLY).unwrap_err();
+    let mistakes = load(&Source::new("s.json", style), &CATALOG).unwrap_err();
     let place = &mistakes.list[0].place;
     assert_eq!((place.line, place.column), (1, 30));
     let without_mark = style.trim_start_matches('\u{feff}');
@@ -392,14 +392,14 @@ fn a_place_points_at_the_bytes() {
 
 #[test]
 fn text_that_is_not_utf8_has_its_line() {
-    let mistakes = load(&Source::new("s.json", b"{\n \xff }"), &EARLY).unwrap_err();
+    let mistakes = load(&Source::new("s.json", b"{\n \xff }"), &CATALOG).unwrap_err();
     assert_eq!(mistakes.to_string(), "s.json:2:2: this is not UTF-8 text: save the file as UTF-8");
 }
 
 #[test]
 fn a_file_beyond_the_limit_is_refused_whole() {
     let text = vec![b' '; restyle::config::syntax::MAX_BYTES + 1];
-    let mistakes = load(&Source::new("s.json", text), &EARLY).unwrap_err();
+    let mistakes = load(&Source::new("s.json", text), &CATALOG).unwrap_err();
     assert_eq!(mistakes.to_string(), "s.json: a style is at most 16 MB, and this file is larger");
 }
 
@@ -424,6 +424,6 @@ fn a_large_style_of_one_line_is_read_in_time() {
     let entry = "{ \"name\": \"n@\", \"shader\": \"toon\", \"properties\": { \"steps\": 3 } }";
     let entries: Vec<String> = (0..20_000).map(|i| entry.replace('@', &i.to_string())).collect();
     let style = format!("{{ \"shaders\": [{}], \"mapping\": {{ \"atom\": \"n19999\" }} }}", entries.join(","));
-    let loaded = load(&Source::new("s.json", style), &EARLY).unwrap();
+    let loaded = load(&Source::new("s.json", style), &CATALOG).unwrap();
     assert_eq!(loaded.shaders.len(), 20_001);
 }

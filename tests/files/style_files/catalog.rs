@@ -30,51 +30,35 @@ const TOON: &[Param] = &[
 
 const UNLIT: &[Param] = &[BASE_COLOR, OPACITY];
 
-/// What `dofPost` has once it is drawn.
 const DOF: &[Param] = &[Param::numbers("layers", &[0.0, 0.0, 0.7, 0.9]).of_len(4).range(0.0, 1.0).doc("Layers.")];
 
+const SSAO: &[Param] = &[Param::length("radius", "3r").range(0.0, 100.0).unit("radii").doc("How far.")];
+
 const fn object(name: &'static str, params: &'static [Param]) -> CatalogEntry {
-    CatalogEntry { name, role: Role::Object, doc: "Draws.", params, drawn: true }
+    CatalogEntry { name, role: Role::Object, doc: "Draws.", params }
 }
 
-const fn effect(name: &'static str, params: &'static [Param], drawn: bool) -> CatalogEntry {
-    CatalogEntry { name, role: Role::PostEffect, doc: "Changes.", params, drawn }
+const fn effect(name: &'static str, params: &'static [Param]) -> CatalogEntry {
+    CatalogEntry { name, role: Role::PostEffect, doc: "Changes.", params }
 }
 
-const CURVATURE: CatalogEntry = CatalogEntry { drawn: false, ..object("curvature", &[]) };
-const KINDS: &[ObjectKind] = &[ObjectKind::Atom, ObjectKind::Connector, ObjectKind::Mesh];
-
-/// A version that draws no post effects.
-pub const EARLY: Catalog<'_> = Catalog {
+pub const CATALOG: Catalog<'_> = Catalog {
     shaders: &[
         object("basic", BASIC),
         object("toon", TOON),
         object("unlit", UNLIT),
-        CURVATURE,
-        effect("ssaoPost", &[], false),
-        effect("dofPost", &[], false),
-        effect("outlinePost", &[], false),
+        object("curvature", UNLIT),
+        effect("ssaoPost", SSAO),
+        effect("dofPost", DOF),
+        effect("outlinePost", &[]),
     ],
-    kinds: KINDS,
-};
-
-/// A version that draws depth of field and occlusion.
-pub const LATER: Catalog<'_> = Catalog {
-    shaders: &[
-        object("basic", BASIC),
-        object("toon", TOON),
-        object("unlit", UNLIT),
-        CURVATURE,
-        effect("ssaoPost", &[], true),
-        effect("dofPost", DOF, true),
-    ],
-    kinds: KINDS,
+    kinds: &[ObjectKind::Atom, ObjectKind::Connector, ObjectKind::Mesh],
 };
 
 #[test]
 fn every_table_is_sound() {
-    assert_eq!(EARLY.check(), Vec::<String>::new());
-    assert_eq!(LATER.check(), Vec::<String>::new());
+    assert_eq!(CATALOG.check(), Vec::<String>::new());
+    assert_eq!(CATALOG.check(), Vec::<String>::new());
     use restyle::config::{camera, geometry, light, param::check_table, transparency};
     for table in [camera::PARAMS, geometry::PARAMS, light::PARAMS, transparency::PARAMS] {
         assert_eq!(check_table(table), Vec::<String>::new());

@@ -2,7 +2,7 @@
 
 use restyle::config::{Source, Style, explain, load_with};
 
-use super::catalog::EARLY;
+use super::catalog::CATALOG;
 
 const BASE: &str = r#"{ "camera": { "fov": 20, "zoom": 2 }, "lights": [{}],
   "mapping": { "atom": "a", "connector": "toon" },
@@ -16,7 +16,7 @@ const OWN: &str = r##"{ "extends": "base",
 
 fn style() -> Style {
     let loader = |_: &str, _: &Source| Ok(Source::new("base", BASE));
-    load_with(&Source::new("own", OWN), &EARLY, &loader).unwrap_or_else(|mistakes| panic!("{mistakes}"))
+    load_with(&Source::new("own", OWN), &CATALOG, &loader).unwrap_or_else(|mistakes| panic!("{mistakes}"))
 }
 
 #[test]
@@ -39,9 +39,9 @@ fn every_value_has_its_origin() {
         "  connector        null (hidden)  own:5:16, over base:2:29",
         "  atom             \"a\"            base:2:16",
         "  all else         \"basic\"        default",
-        "shader \"curvature\": curvature, drawn with basic for now  default",
+        "shader \"curvature\": curvature  default",
         "post effects  own:5:83",
-        "  \"dofPost\"  dofPost, not drawn yet  own:5:84",
+        "  \"dofPost\"  dofPost  own:5:84",
     ] {
         assert!(text.lines().any(|shown| shown == line), "{line:?} is not in\n{text}");
     }
@@ -76,7 +76,7 @@ fn json_holds_the_same() {
         .collect();
     assert_eq!(mapping, [("atom[element=O]", Some("curvature")), ("connector", None), ("atom", Some("a"))]);
     assert_eq!(json["all_else"], "basic");
-    assert_eq!(json["post_effects"][0]["drawn"], false);
+    assert_eq!(json["post_effects"][0]["effect"], "dofPost");
 }
 
 #[test]
@@ -86,7 +86,7 @@ fn an_override_of_an_override_names_the_nearest_base() {
         _ => Ok(Source::new("base", BASE)),
     };
     let own = r#"{ "extends": "middle", "camera": { "fov": 26 } }"#;
-    let style = load_with(&Source::new("own", own), &EARLY, &loader).unwrap();
+    let style = load_with(&Source::new("own", own), &CATALOG, &loader).unwrap();
     let text = explain::text(&style);
     assert!(text.contains("own:1:43, over middle:1:41\n"), "{text}");
     assert!(text.contains("lights: none  middle:1:57, over base:1:49\n"), "{text}");
@@ -94,7 +94,7 @@ fn an_override_of_an_override_names_the_nearest_base() {
 
 #[test]
 fn a_style_without_lights_explains_the_default_ones() {
-    let style = load_with(&Source::new("own", "{}"), &EARLY, &|_: &str, _: &Source| Err(String::new())).unwrap();
+    let style = load_with(&Source::new("own", "{}"), &CATALOG, &|_: &str, _: &Source| Err(String::new())).unwrap();
     let text = explain::text(&style);
     assert!(text.contains("lights[1]  default\n  type       ambient          default\n"), "{text}");
     assert!(text.contains("  intensity  0.3              default\n"), "{text}");

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use restyle::config::syntax::MAX_BYTES;
 use restyle::config::{ObjectKind, Source, Style, load, load_file, load_with};
 
-use super::catalog::EARLY;
+use super::catalog::CATALOG;
 
 /// Loads `own` with bases from a table of names and texts.
 fn extended(own: &str, bases: &[(&str, &str)]) -> Result<Style, String> {
@@ -13,7 +13,7 @@ fn extended(own: &str, bases: &[(&str, &str)]) -> Result<Style, String> {
         Some((name, text)) => Ok(Source::new(*name, *text)),
         None => Err("there is no such look".to_owned()),
     };
-    load_with(&Source::new("own.json", own), &EARLY, &loader).map_err(|mistakes| mistakes.to_string())
+    load_with(&Source::new("own.json", own), &CATALOG, &loader).map_err(|mistakes| mistakes.to_string())
 }
 
 const BASE: &str = r#"{ "camera": { "fov": 20, "zoom": 2 }, "lights": [{}, {}, {}],
@@ -102,7 +102,7 @@ fn a_long_chain_is_refused() {
         count.set(count.get() + 1);
         Ok(Source::new(format!("base{}", count.get()), "{ \"extends\": \"next\" }"))
     };
-    let mistakes = load_with(&Source::new("own.json", "{ \"extends\": \"next\" }"), &EARLY, &loader).unwrap_err();
+    let mistakes = load_with(&Source::new("own.json", "{ \"extends\": \"next\" }"), &CATALOG, &loader).unwrap_err();
     assert!(
         mistakes.to_string().ends_with("more than 16 styles extend one another: make the chain shorter"),
         "{mistakes}"
@@ -117,11 +117,11 @@ fn files_are_found_beside_the_file_that_names_them() {
     write("own.json", r#"{ "extends": "bases/one.json" }"#);
     write("bases/one.json", r#"{ "extends": "two.json", "camera": { "zoom": 4 } }"#);
     write("bases/two.json", r#"{ "camera": { "zoom": 2, "fov": 25 } }"#);
-    let style = load_file(&folder.join("own.json"), &EARLY);
+    let style = load_file(&folder.join("own.json"), &CATALOG);
     write("bases/two.json", r#"{ "extends": "../bases/../own.json" }"#);
-    let circle = load_file(&folder.join("own.json"), &EARLY).unwrap_err();
+    let circle = load_file(&folder.join("own.json"), &CATALOG).unwrap_err();
     write("bases/two.json", "{ \"camera\": 1 }");
-    let lonely = load(&Source::new("look", "{ \"extends\": \"own.json\" }"), &EARLY).unwrap_err();
+    let lonely = load(&Source::new("look", "{ \"extends\": \"own.json\" }"), &CATALOG).unwrap_err();
     std::fs::remove_dir_all(&folder).unwrap();
     let style = style.unwrap();
     assert_eq!((style.camera.zoom, style.camera.fov), (4.0, 25.0));
@@ -153,7 +153,7 @@ fn a_style_without_its_base_is_checked_itself() {
         "own.json:1:14 (extends): cannot extend \"none\": there is no such look\n\
          own.json:1:42 (camera.zoom): \"zoom\" is 0, but must lie in 0.01 to 1000\n\
          own.json:1:76 (mapping.atm): selector \"atm\": there is no type \"atm\"; did you mean \"atom\"? allowed: atom, connector, ribbon, surface, mesh, *, post_effects\n\
-         own.json:2:93 (shaders[1].shader): no shader is called \"tone\"; did you mean \"toon\"? allowed: basic, toon, unlit"
+         own.json:2:93 (shaders[1].shader): no shader is called \"tone\"; did you mean \"toon\"? allowed: basic, toon, unlit, curvature, ssaoPost, dofPost, outlinePost"
     );
 }
 
@@ -242,11 +242,11 @@ fn files_that_are_looked_for_are_told_whether_they_are_there_or_not() {
     let folder = Folder::new("looked_for");
     let own = folder.write("own.json", "{ \"extends\": \"middle.json\" }");
     let middle = folder.write("middle.json", "{ \"extends\": \"none.json\" }");
-    let mistakes = load_file(&own, &EARLY).unwrap_err();
+    let mistakes = load_file(&own, &CATALOG).unwrap_err();
     assert_eq!(mistakes.files, [own.clone(), middle, folder.0.join("none.json")]);
     assert!(mistakes.to_string().ends_with("cannot extend \"none.json\": there is no such file"), "{mistakes}");
     let absent = folder.0.join("absent.json");
-    assert_eq!(load_file(&absent, &EARLY).unwrap_err().files, [absent]);
+    assert_eq!(load_file(&absent, &CATALOG).unwrap_err().files, [absent]);
 }
 
 #[test]
@@ -273,15 +273,15 @@ fn paths_that_are_no_style_files_say_why() {
         ("empty.json", "empty.json: the file is empty: the smallest style is {}"),
     ] {
         let own = folder.write("own.json", format!("{{ \"extends\": \"{base}\" }}"));
-        let mistakes = load_file(&own, &EARLY).unwrap_err().to_string();
+        let mistakes = load_file(&own, &CATALOG).unwrap_err().to_string();
         assert_eq!(mistakes.lines().count(), 1, "{mistakes}");
         assert!(mistakes.contains(reason), "{mistakes}");
     }
     let long = "x".repeat(5000);
     let own = folder.write("own.json", format!("{{ \"extends\": \"{long}\" }}"));
-    assert!(load_file(&own, &EARLY).unwrap_err().to_string().contains("this name is too long"));
+    assert!(load_file(&own, &CATALOG).unwrap_err().to_string().contains("this name is too long"));
     let own = folder.write("own.json", "{ \"extends\": \"longest.json\" }");
-    assert!(load_file(&own, &EARLY).is_ok());
+    assert!(load_file(&own, &CATALOG).is_ok());
 }
 
 #[cfg(unix)]
@@ -293,7 +293,7 @@ fn links_are_followed_and_never_in_circles() {
     let link = folder.0.join("link.json");
     let said_with_link_to = |target: &str| {
         symlink(target, &link).unwrap();
-        let said = load_file(&own, &EARLY).map_err(|mistakes| mistakes.to_string());
+        let said = load_file(&own, &CATALOG).map_err(|mistakes| mistakes.to_string());
         std::fs::remove_file(&link).unwrap();
         said.map(|style| style.camera.fov)
     };
@@ -318,7 +318,7 @@ fn a_file_that_never_settles_is_read_all_the_same() {
                 file.write_all(b" ").unwrap();
             }
         });
-        let loaded: Vec<bool> = (0..20).map(|_| load_file(&own, &EARLY).is_ok()).collect();
+        let loaded: Vec<bool> = (0..20).map(|_| load_file(&own, &CATALOG).is_ok()).collect();
         is_done.store(true, Ordering::Relaxed);
         assert_eq!(loaded, [true; 20]);
     });

@@ -7,7 +7,7 @@ use restyle::scene::{
     Assembly, Element, FileBond, MeshMaterial, MoleculeBuilder, Name, NewAtom, RawMesh, Report, Residue, Scene,
 };
 
-use super::catalog::EARLY;
+use super::catalog::CATALOG;
 
 /// Random styles, each on a random scene.
 const NUM_STYLES: usize = 3000;
@@ -29,7 +29,7 @@ impl Random {
 }
 
 fn style_of(text: &str) -> Style {
-    load(&Source::new("s.json", text), &EARLY).unwrap_or_else(|mistakes| panic!("{mistakes}\n{text}"))
+    load(&Source::new("s.json", text), &CATALOG).unwrap_or_else(|mistakes| panic!("{mistakes}\n{text}"))
 }
 
 /// A style whose every rule has a shader of its own, or hides.

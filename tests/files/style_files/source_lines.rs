@@ -2,7 +2,7 @@
 
 use restyle::config::{Severity, Source, load};
 
-use super::catalog::EARLY;
+use super::catalog::CATALOG;
 
 /// The source lines under the mistakes of a style.
 fn lines(style: impl Into<Vec<u8>>) -> Vec<String> {
@@ -10,7 +10,7 @@ fn lines(style: impl Into<Vec<u8>>) -> Vec<String> {
 }
 
 fn lines_with(style: impl Into<Vec<u8>>, styled: bool) -> Vec<String> {
-    let mistakes = load(&Source::new("s.json", style), &EARLY).expect_err("this style should not load");
+    let mistakes = load(&Source::new("s.json", style), &CATALOG).expect_err("this style should not load");
     let line = |place| mistakes.texts.source_line(place, Severity::Mistake, styled).unwrap_or_default();
     mistakes.list.iter().map(|mistake| line(&mistake.place)).collect()
 }
@@ -61,7 +61,7 @@ fn every_place_of_a_text_can_be_shown() {
     let text = "{\t\"a\u{301}\u{6c34}\u{1f469}\u{200d}\u{1f52c}\": [\r\n\n \u{5d0}\u{202e}\u{1b} /* ".to_owned()
         + &"x\u{1f600}".repeat(80)
         + " */ \"\r\" ]}\n";
-    let mistakes = load(&Source::new("s.json", text.as_str()), &EARLY).unwrap_err();
+    let mistakes = load(&Source::new("s.json", text.as_str()), &CATALOG).unwrap_err();
     let mut place = mistakes.list[0].place.clone();
     for start in 0..=text.len() + 1 {
         for end in [start.saturating_sub(1), start, start + 1, start + 7, text.len() + 2] {
@@ -136,7 +136,7 @@ fn a_line_of_16_megabytes_is_cut_before_it_is_shown() {
     let filler = "\"$schema\": \"".to_owned() + &"\u{6c34}\u{1b}".replace('\u{1b}', "x").repeat(3 << 20);
     let text = format!("{{ {filler}\", \"fov\": 1, \"zoom\": 2 }}");
     assert!(text.len() > 12 << 20);
-    let mistakes = load(&Source::new("s.json", text), &EARLY).unwrap_err();
+    let mistakes = load(&Source::new("s.json", text), &CATALOG).unwrap_err();
     let shown: Vec<String> = (0..1000)
         .flat_map(|_| &mistakes.list)
         .map(|mistake| mistakes.texts.source_line(&mistake.place, Severity::Mistake, false).unwrap())
@@ -155,7 +155,8 @@ fn colours_come_only_on_request() {
     let styled = lines_with("{ \"fov\": \"\u{1b}[31m\" }", true).concat();
     assert!(styled.contains("\u{1b}[91m"), "the marker is red: {styled:?}");
     assert!(!styled.contains("\u{1b}[31m"), "the file's own colours are not obeyed: {styled:?}");
-    let style = load(&Source::new("s.json", r#"{ "shaders": [{ "name": "a", "shader": "toon" }] }"#), &EARLY).unwrap();
+    let style =
+        load(&Source::new("s.json", r#"{ "shaders": [{ "name": "a", "shader": "toon" }] }"#), &CATALOG).unwrap();
     let warning = style.texts.source_line(&style.warnings[0].place, Severity::Warning, true).unwrap();
     assert!(warning.contains("\u{1b}[33m"), "the marker is yellow: {warning:?}");
 }

@@ -3,10 +3,10 @@
 use restyle::config::{SECTIONS, Source, load};
 use serde_json::{Value as Json, json};
 
-use super::catalog::EARLY;
+use super::catalog::CATALOG;
 
 fn messages(style: &str) -> String {
-    load(&Source::new("s.json", style), &EARLY).map_or_else(|mistakes| mistakes.to_string(), |_| "fine".to_owned())
+    load(&Source::new("s.json", style), &CATALOG).map_or_else(|mistakes| mistakes.to_string(), |_| "fine".to_owned())
 }
 
 #[test]
@@ -16,7 +16,7 @@ fn every_parameter_is_sent_home_from_where_it_means_nothing() {
         let place = if section.is_list { "in a light of" } else { "in" };
         homes.extend(section.params.iter().map(|param| (param.name, format!("{place} \"{}\"", section.key))));
     }
-    for shader in EARLY.shaders.iter().filter(|shader| shader.drawn) {
+    for shader in CATALOG.shaders.iter() {
         for param in shader.params {
             let is_shared = ["base_color", "opacity"].contains(&param.name);
             let of = if is_shared { String::new() } else { format!(" \"{}\"", shader.name) };
@@ -108,6 +108,6 @@ fn habits_of_other_programs_are_met_with_what_to_write() {
 #[test]
 fn a_picture_is_one_mistake() {
     let picture = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0 \0\0\0 ";
-    let mistakes = load(&Source::new("s.json", *picture), &EARLY).map(drop).unwrap_err().to_string();
+    let mistakes = load(&Source::new("s.json", *picture), &CATALOG).map(drop).unwrap_err().to_string();
     assert_eq!(mistakes, "s.json:1:1: this is not UTF-8 text: save the file as UTF-8");
 }

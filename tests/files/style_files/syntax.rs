@@ -3,10 +3,10 @@
 
 use restyle::config::{Source, load};
 
-use super::catalog::EARLY;
+use super::catalog::CATALOG;
 
 fn messages(style: &str) -> String {
-    match load(&Source::new("s.json", style), &EARLY) {
+    match load(&Source::new("s.json", style), &CATALOG) {
         Ok(_) => panic!("this style loads, but should not: {style}"),
         Err(mistakes) => mistakes.to_string(),
     }
@@ -131,7 +131,7 @@ s.json:2:11 (camera.zoom): "zoom" is 0, but must lie in 0.01 to 1000"#,
   { "name": "f", "shader": "toon }
 ], "camera": { "zoom": 0 } }"#,
         r#"s.json:2:5: this key is not closed: write "name"
-s.json:2:30 (shaders[0].shader): no shader is called "tone"; did you mean "toon"? allowed: basic, toon, unlit
+s.json:2:30 (shaders[0].shader): no shader is called "tone"; did you mean "toon"? allowed: basic, toon, unlit, curvature, ssaoPost, dofPost, outlinePost
 s.json:3:13: this text is not closed: write "b"
 s.json:4:18: this key is not closed: write "shader"
 s.json:5:18: this text has no opening quote: write "shader"
@@ -205,12 +205,12 @@ s.json:1:39 (mapping.atm): selector "atm": there is no type "atm"; did you mean 
     (
         r#"{ "shaders": [{ "name": "a", "shader": "toon", { "name": "b", "shader": "tone" }] }"#,
         r#"s.json:1:48: the { at 1:15 is not closed: write } before this {
-s.json:1:73 (shaders[1].shader): no shader is called "tone"; did you mean "toon"? allowed: basic, toon, unlit"#,
+s.json:1:73 (shaders[1].shader): no shader is called "tone"; did you mean "toon"? allowed: basic, toon, unlit, curvature, ssaoPost, dofPost, outlinePost"#,
     ),
     (
         r#"{ "shaders": [{ "name": "a", "shader": "toon" { "name": "b", "shader": "tone" }] }"#,
         r#"s.json:1:47: the { at 1:15 is not closed: write } before this {
-s.json:1:72 (shaders[1].shader): no shader is called "tone"; did you mean "toon"? allowed: basic, toon, unlit"#,
+s.json:1:72 (shaders[1].shader): no shader is called "tone"; did you mean "toon"? allowed: basic, toon, unlit, curvature, ssaoPost, dofPost, outlinePost"#,
     ),
     (
         r#"{ "camera": { "up": [0, 0, 0, "fov": 300 } }"#,
@@ -365,7 +365,7 @@ s.json:1:27: this */ closes no comment: remove it"#,
         r#"{ "shaders": [ { "name": "a", "shader": "toon", "properties": { "steps": 99, }, { "name": "b", "shader": "tone" } ], "mapping": { "atom": "zz" } }"#,
         r#"s.json:1:74 (shaders[0].properties.steps): "steps" is 99, but must lie in 1 to 64 levels
 s.json:1:81: the { at 1:16 is not closed: write } before this {
-s.json:1:106 (shaders[1].shader): no shader is called "tone"; did you mean "toon"? allowed: basic, toon, unlit"#,
+s.json:1:106 (shaders[1].shader): no shader is called "tone"; did you mean "toon"? allowed: basic, toon, unlit, curvature, ssaoPost, dofPost, outlinePost"#,
     ),
     (
         r#"{ "mapping": { "post_effects": ["dofPost, "ssaoPost"], "atm": null } }"#,
@@ -492,7 +492,7 @@ s.json:1:52: the [ at 1:13 is not closed: write ] before this }"#,
         r#"s.json:3:13 (camera.zoom): "zoom" is 0, but must lie in 0.01 to 1000
 s.json:5:3: the { at 2:13 is not closed: write } before this key
 s.json:5:29 (lights[0].strength): "strength" is 2, but must lie in 0 to 1
-s.json:6:41 (shaders[0].shader): no shader is called "tone"; did you mean "toon"? allowed: basic, toon, unlit"#,
+s.json:6:41 (shaders[0].shader): no shader is called "tone"; did you mean "toon"? allowed: basic, toon, unlit, curvature, ssaoPost, dofPost, outlinePost"#,
     ),
     (
         r#"# my look
@@ -525,7 +525,7 @@ s.json:1:65 (mapping.atm): selector "atm": there is no type "atm"; did you mean 
     ),
     (
         r#"{ "mapping": { "atom": "flat" }, "camera": { "fov": .5 } }"#,
-        r#"s.json:1:24 (mapping.atom): no shader is called "flat"; allowed: basic, toon, unlit
+        r#"s.json:1:24 (mapping.atom): no shader is called "flat"; allowed: basic, toon, unlit, curvature
 s.json:1:53: write 0.5 instead of .5"#,
     ),
     (
@@ -585,7 +585,7 @@ fn mistakes_by_number(mark: char, damage: impl Fn(&str, usize) -> String) -> Vec
         let text = std::fs::read_to_string(folder.join(name)).expect("the fixtures are part of the project");
         for (at, _) in text.match_indices(mark) {
             let damaged = damage(&text, at);
-            let number = load(&Source::new("s.json", damaged.as_str()), &EARLY)
+            let number = load(&Source::new("s.json", damaged.as_str()), &CATALOG)
                 .map_or_else(|mistakes| mistakes.list.len(), |_| 0);
             numbers[number.min(2)] += 1;
         }

@@ -23,12 +23,11 @@ pub const CURVATURE: CatalogEntry = CatalogEntry {
         ]),
         Param::color_transfer("color_transfer", "fig6a").doc("Colour.").examples(&["\"ink\"", "[[-1, 1], [1, 0.5]]"]),
     ],
-    drawn: true,
 };
 
 /// A version that draws it.
 pub const GLASS: Catalog<'_> = Catalog {
-    shaders: &[CatalogEntry { name: "basic", role: Role::Object, doc: "Draws.", params: &[], drawn: true }, CURVATURE],
+    shaders: &[CatalogEntry { name: "basic", role: Role::Object, doc: "Draws.", params: &[] }, CURVATURE],
     kinds: &[ObjectKind::Mesh],
 };
 

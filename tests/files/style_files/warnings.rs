@@ -4,14 +4,14 @@ use restyle::config::{Catalog, Notice, Source, Style, Warning, load, load_with};
 use restyle::engine::{DRAWN_KINDS, catalog, lint};
 use restyle::scene::Scene;
 
-use super::catalog::EARLY;
+use super::catalog::CATALOG;
 
 fn told(warnings: &[Warning]) -> Vec<String> {
     warnings.iter().map(ToString::to_string).collect()
 }
 
 fn warnings(style: &str) -> Vec<String> {
-    told(&load(&Source::new("s.json", style), &EARLY).unwrap_or_else(|mistakes| panic!("{mistakes}")).warnings)
+    told(&load(&Source::new("s.json", style), &CATALOG).unwrap_or_else(|mistakes| panic!("{mistakes}")).warnings)
 }
 
 /// A style as the program itself loads it.
@@ -43,7 +43,6 @@ fn what_nothing_names_is_unused() {
         [
             r#"s.json:1:25 (shaders[0].name): warning: shader "a" draws nothing: name it in mapping, or remove it"#,
             r#"s.json:2:19 (shaders[2].name): warning: post effect "ao" does nothing: list it in mapping.post_effects, or remove it"#,
-            r#"s.json:2:35 (shaders[2].shader): warning: post effect "ssaoPost" is drawn by the reference renderer alone so far (--renderer reference): it is left out"#,
         ]
     );
 }
@@ -53,7 +52,7 @@ fn a_base_may_hold_more_than_a_style_takes() {
     let base = r#"{ "shaders": [{ "name": "a", "shader": "toon" }, { "name": "b", "shader": "toon" }] }"#;
     let loader = |_: &str, _: &Source| Ok(Source::new("base.json", base));
     let own = r#"{ "extends": "base.json", "shaders": [{ "name": "b", "properties": { "steps": 2 } }] }"#;
-    let style = load_with(&Source::new("s.json", own), &EARLY, &loader).unwrap();
+    let style = load_with(&Source::new("s.json", own), &CATALOG, &loader).unwrap();
     assert_eq!(
         told(&style.warnings),
         [r#"s.json:1:49 (shaders[0].name): warning: shader "b" draws nothing: name it in mapping, or remove it"#]
@@ -74,7 +73,7 @@ fn a_selector_that_a_later_one_always_beats_is_told() {
     // To write a selector of the base in another way is to change the base.
     let loader = |_: &str, _: &Source| Ok(Source::new("base.json", r#"{ "mapping": { "atom[element=O]": "toon" } }"#));
     let own = r#"{ "extends": "base.json", "mapping": { "atom[element=o]": "unlit" } }"#;
-    let style = load_with(&Source::new("s.json", own), &EARLY, &loader).unwrap();
+    let style = load_with(&Source::new("s.json", own), &CATALOG, &loader).unwrap();
     assert_eq!(told(&style.warnings), Vec::<String>::new());
 }
 
@@ -155,17 +154,17 @@ fn warnings_beyond_a_hundred_are_counted() {
     let entry = |i: usize| format!(r#"{{ "name": "n{i}", "shader": "toon" }}"#);
     let entries: Vec<String> = (0..20_000).map(entry).collect();
     let text = format!(r#"{{ "shaders": [{}] }}"#, entries.join(", "));
-    let style = load(&Source::new("s.json", text), &EARLY).unwrap();
+    let style = load(&Source::new("s.json", text), &CATALOG).unwrap();
     assert_eq!((style.warnings.len(), style.unlisted_warnings), (100, 19_900));
 }
 
 #[test]
 fn warnings_stand_beside_mistakes() {
-    let text = r#"{ "camera": { "fov": 0 }, "mapping": { "atom": "curvature" },
+    let text = r#"{ "camera": { "fov": 0 }, "mapping": { "ribbon": "toon" },
         "shaders": [{ "name": "a", "shader": "toon" }] }"#;
-    let mistakes = load(&Source::new("s.json", text), &EARLY).unwrap_err();
+    let mistakes = load(&Source::new("s.json", text), &CATALOG).unwrap_err();
     assert_eq!(mistakes.list.len(), 1);
     // What is unused is not told yet: a rule that could not be read may name it.
     let notices: Vec<&Notice> = mistakes.warnings.iter().map(|warning| &warning.notice).collect();
-    assert!(matches!(notices[..], [Notice::ShaderNotDrawn { .. }]), "{notices:?}");
+    assert!(matches!(notices[..], [Notice::TypeNotDrawn { .. }]), "{notices:?}");
 }
