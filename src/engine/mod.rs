@@ -385,7 +385,7 @@ impl Engine {
         let without = |value: f32| ids.iter().map(move |id| if *id == 0 { -1.0 } else { value }).collect::<Vec<f32>>();
         let (mut ao, mut coc) = (without(1.0), without(0.0));
         for (effect, values) in found {
-            match EFFECTS[effect].aov().map(|aov| aov.name) {
+            match EFFECTS[effect].aov(0).map(|aov| aov.name) {
                 Some("ao") => {
                     ao.iter_mut().zip(values).filter(|(all, _)| **all > 0.0).for_each(|(all, one)| *all *= one)
                 }

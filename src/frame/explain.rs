@@ -76,6 +76,7 @@ pub fn steps(gpu: &Gpu, plan: &Plan, input: &FrameInput<'_>, counts: [u64; 3]) -
         count => {
             (1 + chain.surfaces.min(1)) as u64 * bytes_of(size, GEOMETRY_FORMAT)
                 + count.min(2) as u64 * bytes_of(size, COLOR_FORMAT)
+                + if chain.lines { 2 * (bytes_of(size, GEOMETRY_FORMAT) + bytes_of(size, COLOR_FORMAT)) } else { 0 }
         }
     };
     let beside = if of_effects > 0 { ", with the surface beside it for post effects" } else { "" };
@@ -150,8 +151,17 @@ fn list_steps(layers: &LayersPlan, size: [u32; 2]) -> Vec<Step> {
         ),
         Step::drawn("layers_room", size, 0, "each pixel's list gets its place in the pool"),
         Step::drawn("layers_written", size, 0, "8 bytes for each fragment, in a pool of as many as there are"),
-        Step::drawn("layers_blended", size, 0, "each list is sorted, shaded and blended until no light comes through"),
     ];
+    steps.push(match layers.apart {
+        Some(_) => {
+            let reason = "each list is sorted and shaded, with 8 bytes more a fragment, for an effect that sees each at its own depth";
+            Step::drawn("layers_kept", size, 0, reason)
+        }
+        None => {
+            let reason = "each list is sorted, shaded and blended until no light comes through";
+            Step::drawn("layers_blended", size, 0, reason)
+        }
+    });
     if layers.leaves_surfaces() {
         let reason = "a post effect follows, which sees the nearest surface";
         steps.push(Step::drawn("layers_nearest", size, 0, reason));

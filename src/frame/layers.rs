@@ -4,6 +4,9 @@
 //! 8 bytes each (depth and id), sorted, and shaded from their ids only as far as light comes through (ours, of the family that
 //! [Maule2014, throughout] surveys). Nothing is dropped: where the pool is too small, the frame tells by how much, the pool
 //! grows and the frame is drawn again; where it would outgrow a binding, the picture is drawn in bands.
+//!
+//! Depth of field reads the lists themselves, with the light of each fragment beside it, instead of a blended picture. That
+//! takes all of them at once: where they would not fit, what is blended is blurred by the depth of its nearest surface.
 
 use super::ShadeKey;
 use super::fullscreen;
@@ -16,8 +19,9 @@ use crate::{gpu_struct, wgsl};
 
 /// Bytes of what a band tells: its fragments, and whether they are more than that word counts.
 const TOTAL_BYTES: u64 = 8;
-/// Bytes of a fragment.
+/// Bytes of a fragment, and of its light where that is kept.
 const FRAGMENT_BYTES: u64 = 8;
+const LIGHT_BYTES: u64 = 8;
 /// Fragments for each pixel that a pool holds before more are known to be there.
 const FIRST_LAYERS: u64 = 4;
 /// How much more than what was needed a pool holds, so that a turned scene does not outgrow it at once.
@@ -52,8 +56,17 @@ pub struct LayersPlan {
     pub write: VisibilityKey,
     /// Post effects before them.
     pub after_effects: usize,
+    /// Whether they stay apart, instead of being blended.
+    pub apart: Option<Apart>,
     /// Whether counts and ids of nearest surfaces are asked for.
     pub for_aovs: bool,
+}
+
+/// How layers stay with their depths until the effect that reads their lists, the last of all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Apart {
+    /// Whether effects draw lines between.
+    pub lines: bool,
 }
 
 /// Where the blended picture goes, and what it is blended over.
@@ -66,8 +79,8 @@ pub struct LayerTargets<'a> {
     pub depth: &'a wgpu::TextureView,
     /// Ids of what is opaque, which become those of the nearest surfaces.
     pub ids: &'a wgpu::TextureView,
-    /// The picture.
-    pub to: &'a wgpu::TextureView,
+    /// The picture; none where layers stay apart.
+    pub to: Option<&'a wgpu::TextureView>,
     /// Its surfaces, for effects that follow.
     pub to_geometry: Option<&'a wgpu::TextureView>,
     /// Whether the picture is cleared first.
@@ -101,10 +114,15 @@ pub struct Layers {
     readable: Option<(wgpu::Buffer, u64)>,
     /// Fragments that the pool holds.
     capacity: u64,
+    /// Whether it holds their light as well.
+    keeps_light: bool,
+    /// Whether the lists of a picture of this size are too many to be kept at once.
+    is_too_much: bool,
     num_bands: u32,
     room: Option<(wgpu::BindGroupLayout, wgpu::ComputePipeline)>,
     nearest: Option<wgpu::RenderPipeline>,
     slots: Vec<BandSlot>,
+    lists_params: Option<KeptBuffer>,
     num_totals: u64,
     /// The counts of all bands, where AOVs ask for them.
     all_counts: Option<wgpu::Buffer>,
@@ -137,6 +155,41 @@ fn band_layout(gpu: &Gpu, label: &'static str, textures: &[wgpu::TextureSampleTy
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
 }
 
+fn fragment_bytes(keeps_light: bool) -> u64 {
+    FRAGMENT_BYTES + if keeps_light { LIGHT_BYTES } else { 0 }
+}
+
+/// Bands of which each has as many counts as fit a binding.
+fn bands_of_counts(size: [u32; 2], limit: u64) -> u32 {
+    (u64::from(size[0]) * u64::from(size[1]) * 4).div_ceil(limit.max(1)).max(1) as u32
+}
+
+fn band_of(size: [u32; 2], rows: &std::ops::Range<u32>, capacity: u64) -> LayerBand {
+    LayerBand {
+        width: size[0],
+        first_pixel: rows.start * size[0],
+        num_pixels: (rows.end - rows.start) * size[0],
+        capacity: capacity as u32,
+    }
+}
+
+/// What an effect binds that reads lists, with lines and their surfaces where there are any.
+pub fn lists_layout(gpu: &Gpu, lines: bool) -> wgpu::BindGroupLayout {
+    let stage = wgpu::ShaderStages::FRAGMENT;
+    let read = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Storage { read_only: true },
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    let mut entries = vec![plain(0, stage, fullscreen::UNIFORM)];
+    entries.extend((1..4).map(|binding| plain(binding, stage, read)));
+    if lines {
+        let types = [wgpu::TextureSampleType::Float { filterable: false }, wgpu::TextureSampleType::Uint];
+        entries.extend((4..).zip(types).map(|(binding, of)| plain(binding, stage, fullscreen::texture(of))));
+    }
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("lists"), entries: &entries })
+}
+
 /// What counting and writing bind.
 pub fn raster_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     band_layout(gpu, "layers", &[wgpu::TextureSampleType::Depth])
@@ -162,15 +215,23 @@ impl LayersPlan {
         finish: Finish,
         surfaces: bool,
         after_effects: usize,
+        apart: Option<Apart>,
     ) -> LayersPlan {
-        let shade =
-            ShadeKey { layers: Some((finish, surfaces)), hulls: false, encode: false, geometry: true, ..shade.clone() };
+        let shade = ShadeKey {
+            layers: Some((finish, surfaces)),
+            keeps_layers: apart.is_some(),
+            hulls: false,
+            encode: false,
+            geometry: true,
+            ..shade.clone()
+        };
         let raster = |drawn| VisibilityKey { drawn, hulls: false, ..seen };
         LayersPlan {
             shade,
             count: raster(Drawn::CountedLayers),
             write: raster(Drawn::WrittenLayers),
             after_effects,
+            apart,
             for_aovs: false,
         }
     }
@@ -224,19 +285,25 @@ impl Layers {
     ///
     /// # Errors
     /// [`GpuError::TooMany`] where a row of the picture alone outgrows a binding.
-    fn fit(&mut self, gpu: &Gpu, size: [u32; 2], limit: u64, samples: u32) -> Result<(), GpuError> {
-        let most = limit / FRAGMENT_BYTES;
+    fn fit(&mut self, gpu: &Gpu, size: [u32; 2], limit: u64, samples: u32, keeps_light: bool) -> Result<(), GpuError> {
+        let each = fragment_bytes(keeps_light);
+        let most = limit / each;
+        if keeps_light != self.keeps_light {
+            self.keeps_light = keeps_light;
+            self.capacity = self.capacity.min(most);
+            self.pool = None;
+        }
         let pixels = u64::from(size[0]) * u64::from(size[1]);
         if self.size != size || self.num_bands == 0 {
-            // Counts of a band must fit a binding, too.
-            self.num_bands = (pixels * 4).div_ceil(limit.max(1)).max(1) as u32;
+            self.num_bands = bands_of_counts(size, limit);
+            self.is_too_much = false;
             self.size = size;
             self.capacity = self.capacity.max((pixels / u64::from(self.num_bands)) * FIRST_LAYERS).min(most);
             self.pool = None;
             (self.counts, self.starts) = (None, None);
         }
         if self.num_bands > size[1] {
-            let bytes = self.capacity * FRAGMENT_BYTES * u64::from(self.num_bands) / u64::from(size[1].max(1));
+            let bytes = self.capacity * each * u64::from(self.num_bands) / u64::from(size[1].max(1));
             return Err(GpuError::TooMany {
                 what: "layers of one row, which transparency.memory_mb limits, too,",
                 count: self.num_bands as usize,
@@ -255,7 +322,7 @@ impl Layers {
         };
         fit(&mut self.counts, "layer counts", band_bytes);
         fit(&mut self.starts, "layer starts", band_bytes);
-        fit(&mut self.pool, "layers", self.capacity.max(1) * FRAGMENT_BYTES);
+        fit(&mut self.pool, "layers", self.capacity.max(1) * each);
         fit(&mut self.total, "layer total", 16);
         let totals = u64::from(samples) * u64::from(self.num_bands);
         if self.readable.as_ref().is_none_or(|(_, count)| *count < totals) {
@@ -293,12 +360,7 @@ impl Layers {
             if rows.is_empty() {
                 continue;
             }
-            let band = LayerBand {
-                width: self.size[0],
-                first_pixel: rows.start * self.size[0],
-                num_pixels: (rows.end - rows.start) * self.size[0],
-                capacity: self.capacity as u32,
-            };
+            let band = band_of(self.size, &rows, self.capacity);
             let params = slot.params.get_or_insert_with(|| KeptBuffer::uniform("layers"));
             let params = params.set(gpu, bytemuck::bytes_of(&band), 16)?;
             let stored = |last: Vec<(u32, Bound)>| {
@@ -341,8 +403,39 @@ impl Layers {
     ///
     /// # Errors
     /// As [`Layers::prepare`], and [`GpuError::TooMany`] where nothing helps.
-    pub fn begin(&mut self, gpu: &Gpu, size: [u32; 2], memory_bytes: u64, samples: u32) -> Result<(), GpuError> {
-        self.fit(gpu, size, most_bytes(gpu, memory_bytes), samples)
+    pub fn begin(
+        &mut self,
+        gpu: &Gpu,
+        size: [u32; 2],
+        memory_bytes: u64,
+        samples: u32,
+        plan: &LayersPlan,
+    ) -> Result<(), GpuError> {
+        self.fit(gpu, size, most_bytes(gpu, memory_bytes), samples, plan.apart.is_some())
+    }
+
+    /// Whether the lists of a picture of this size can be kept at once, as far as is known.
+    pub fn can_keep(&self, gpu: &Gpu, size: [u32; 2], memory_bytes: u64) -> bool {
+        bands_of_counts(size, most_bytes(gpu, memory_bytes)) == 1 && !(self.size == size && self.is_too_much)
+    }
+
+    /// Whether lists that an effect asked for were too many to be kept at once.
+    pub fn is_too_much(&self) -> bool {
+        self.is_too_much
+    }
+
+    /// The lists of the whole picture, in the order of [`lists_layout`]; none before they are made.
+    ///
+    /// # Errors
+    /// Never for uniforms of a fixed size.
+    pub fn lists(&mut self, gpu: &Gpu) -> Result<Option<Vec<Bound>>, GpuError> {
+        let (Some(counts), Some(starts), Some(pool)) = (&self.counts, &self.starts, &self.pool) else {
+            return Ok(None);
+        };
+        let band = band_of(self.size, &(0..self.size[1]), self.capacity);
+        let params = self.lists_params.get_or_insert_with(|| KeptBuffer::uniform("lists"));
+        let params = params.set(gpu, bytemuck::bytes_of(&band), 16)?;
+        Ok(Some([params, counts.clone(), starts.clone(), pool.clone()].map(Bound::Buffer).to_vec()))
     }
 
     /// Draws the layers of one sample.
@@ -466,8 +559,13 @@ impl Layers {
         if needed <= self.capacity {
             return Ok(true);
         }
-        let most = most_bytes(gpu, memory_bytes) / FRAGMENT_BYTES;
         let wanted = (needed as f64 * SLACK) as u64;
+        let most = most_bytes(gpu, memory_bytes) / fragment_bytes(self.keeps_light);
+        if wanted > most && self.keeps_light {
+            // Drawn again without their light, which may fit at once.
+            self.is_too_much = true;
+            return Ok(false);
+        }
         if wanted > most {
             self.num_bands = (u64::from(self.num_bands) * wanted.div_ceil(most.max(1))).min(u64::from(u32::MAX)) as u32;
             (self.counts, self.starts) = (None, None);
