@@ -22,10 +22,6 @@ const BINS: u32 = 8u;
 const ALL_BINS: u32 = BINS + 1u;
 // Taps that are the pixel and its neighbours, each an area of one pixel.
 const INNER_TAPS: f32 = 9.0;
-// The pixel itself among them.
-const OWN_TAP: u32 = 4u;
-// Surfaces of a smaller radius may be sharp beside the pixel.
-const ALMOST_SHARP_PX: f32 = 1.5;
 // Radius of a disc of that area.
 const INNER_PX: f32 = 1.6925688;
 // Least that counts as covered.
@@ -175,8 +171,6 @@ fn gather_side(own: vec2<i32>, is_near_side: bool, reach: f32) -> Glass {
     // Of each bin premultiplied light; what the surfaces cover and that times their radii, and the same of opaque ones.
     var colors: array<vec4<f32>, ALL_BINS>;
     var weights: array<vec4<f32>, ALL_BINS>;
-    // One bit for each of the inner taps that show something sharp and nothing of this side.
-    var sharp_taps = 0u;
     for (var tap = 0.0; tap < taps; tap += 1.0) {
         let t = tap_of(tap, outer, wide, noise);
         let at = clamp(own + t.off, vec2<i32>(0), last);
@@ -193,7 +187,6 @@ fn gather_side(own: vec2<i32>, is_near_side: bool, reach: f32) -> Glass {
         let list = list_at(at);
         var bin_before = ALL_BINS;
         var open = 0.0;
-        var has_sharp = false;
         var pane = line_at(at);
         var place = list.start;
         let end = list.start + list.count;
@@ -206,7 +199,6 @@ fn gather_side(own: vec2<i32>, is_near_side: bool, reach: f32) -> Glass {
             }
             is_line = false;
             let is_sharp = abs(pane.radius_px) < LEAST_RADIUS_PX;
-            has_sharp |= is_sharp;
             if is_near_side && pane.radius_px > -LEAST_RADIUS_PX { break; }
             if !is_near_side && (pane.radius_px < -LEAST_RADIUS_PX || (is_sharp && !fills)) { continue; }
             let is_behind = has_own && pane.radius_px > circle.radius_px + SAME_PX;
@@ -222,8 +214,6 @@ fn gather_side(own: vec2<i32>, is_near_side: bool, reach: f32) -> Glass {
             colors[bin] += open * pane.opacity * vec4<f32>(pane.color, 1.0);
             open *= 1.0 - pane.opacity;
         }
-        // Where a slanted surface becomes sharp, some taps show it so.
-        if tap < INNER_TAPS && has_sharp && bin_before == ALL_BINS { sharp_taps |= 1u << u32(tap); }
     }
 
     // What such circles would get of all taps that can see them, or of all taps.
@@ -234,18 +224,14 @@ fn gather_side(own: vec2<i32>, is_near_side: bool, reach: f32) -> Glass {
         let fills_bin = fills && bin == 0u;
         let radii = w.yw / max(w.xz, vec2<f32>(1e-9));
         var whole = vec2<f32>(0.0);
-        // What is almost sharp goes on in taps that are: of those nothing is asked, and where the pixel is one, all is there.
-        let hardly = !fills_bin && abs(radii.x) < ALMOST_SHARP_PX;
         for (var tap = 0.0; tap < taps; tap += 1.0) {
             let t = tap_of(tap, outer, wide, noise);
             let solid = circle_at(own + t.off);
-            let shows_sharp = hardly && tap < INNER_TAPS && (sharp_taps >> u32(tap) & 1u) == 1u;
-            let is_hidden = shows_sharp || (solid.is_seen && solid.radius_px < radii.x - SAME_PX);
+            let is_hidden = solid.is_seen && solid.radius_px < radii.x - SAME_PX;
             let spread = t.area * vec2<f32>(spread_at(radii.x, t.distance_px), spread_at(radii.y, t.distance_px));
             whole += vec2<f32>(select(select(spread.x, fill_of(t), fills_bin), 0.0, is_hidden), spread.y);
         }
-        var share = min(w.x / max(whole.x, 1e-9), 1.0);
-        if hardly && (sharp_taps >> OWN_TAP & 1u) == 1u { share = 0.0; }
+        let share = min(w.x / max(whole.x, 1e-9), 1.0);
         colors[bin] *= select(0.0, share / max(w.x, 1e-9), w.x > 0.0);
         let solid_share = min(w.z / max(whole.y, 1e-9), 1.0 - solid_sum);
         solid_sum += solid_share;

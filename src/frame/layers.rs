@@ -419,11 +419,6 @@ impl Layers {
         bands_of_counts(size, most_bytes(gpu, memory_bytes)) == 1 && !(self.size == size && self.is_too_much)
     }
 
-    /// Whether lists that an effect asked for were too many to be kept at once.
-    pub fn is_too_much(&self) -> bool {
-        self.is_too_much
-    }
-
     /// The lists of the whole picture, in the order of [`lists_layout`]; none before they are made.
     ///
     /// # Errors

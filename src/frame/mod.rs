@@ -369,6 +369,14 @@ impl Renderer {
         Ok(explain::steps(&self.gpu, &plan, input, [spheres, cylinders, self.num_triangles()]))
     }
 
+    /// Whether a frame blurs layers as they are blended, since lists of them all are more than the device holds at once. Known when it was
+    /// drawn.
+    pub fn layers_are_merged(&self, input: &FrameInput<'_>) -> bool {
+        let needs = self.contents.needs();
+        let wanted = Plan::new(&self.gpu, &needs, input, self.shadow_quality, true);
+        wanted.is_apart() && !self.plan(&needs, input).is_apart()
+    }
+
     fn plan(&self, needs: &Needs, input: &FrameInput<'_>) -> Plan {
         let can_keep = self.layers.can_keep(&self.gpu, input.drawn_size(), input.layer_bytes);
         Plan::new(&self.gpu, needs, input, self.shadow_quality, can_keep)

@@ -7,6 +7,7 @@ mod brdf_table;
 mod curvature;
 mod environment;
 mod focus;
+mod focus_glass;
 mod furnace;
 mod gpu;
 mod impostors;
