@@ -183,8 +183,8 @@ const FIVE_LAYER: u32 = 1;
 const SHOWS_LAYERS: u32 = 1 << 1;
 /// Lists of what is transparent.
 const GLASS: u32 = 1 << 3;
-/// Lines that were drawn before.
-const LINES: u32 = 1 << 4;
+/// The same, and lines that were drawn before.
+const LINED_GLASS: u32 = 1 << 4;
 
 impl PostEffect for Focus {
     fn name(&self) -> &'static str {
@@ -223,13 +223,8 @@ impl PostEffect for Focus {
         match features {
             _ if features & SHOWS_LAYERS != 0 => SHOWN,
             _ if features & FIVE_LAYER != 0 => LAYERS,
-            _ if features & self::GLASS != 0 => {
-                if features & LINES != 0 {
-                    LINED_GLASS
-                } else {
-                    GLASS
-                }
-            }
+            _ if features & self::LINED_GLASS != 0 => LINED_GLASS,
+            _ if features & self::GLASS != 0 => GLASS,
             _ => GATHER,
         }
     }
@@ -304,7 +299,7 @@ impl PostEffect for Focus {
         match features {
             _ if features & SHOWS_LAYERS != 0 => SHOWN,
             _ if features & FIVE_LAYER != 0 => LAYERS,
-            _ if features & self::GLASS != 0 => GLASS,
+            _ if features & (self::GLASS | LINED_GLASS) != 0 => GLASS,
             _ => GATHER,
         }
     }
@@ -328,11 +323,12 @@ impl PostEffect for Focus {
     }
     fn with_lists(&self, features: u32, lines: bool) -> Option<u32> {
         let is_gather = features & (FIVE_LAYER | SHOWS_LAYERS) == 0;
-        is_gather.then_some(features | GLASS | if lines { LINES } else { 0 })
+        is_gather.then_some(features | if lines { LINED_GLASS } else { GLASS })
     }
     fn reads_lists(&self, features: u32) -> Option<ListsRead> {
         let is_gather = features & (FIVE_LAYER | SHOWS_LAYERS) == 0;
-        (is_gather && features & GLASS != 0).then_some(ListsRead { lines: features & LINES != 0 })
+        let read = ListsRead { lines: features & LINED_GLASS != 0 };
+        (is_gather && features & (GLASS | LINED_GLASS) != 0).then_some(read)
     }
     fn changes_nothing(&self, values: &Values, context: &EffectContext<'_>) -> Option<&'static str> {
         if values.choice("show") == "layers" {
@@ -344,7 +340,7 @@ impl PostEffect for Focus {
         (widest_px < LEAST_PX).then_some("nothing of the scene is blurred by half a pixel")
     }
     fn features(&self) -> &'static [&'static str] {
-        &["FOCUS_FIVE_LAYER", "FOCUS_SHOWN", PUBLISHED, "FOCUS_GLASS", "FOCUS_LINES"]
+        &["FOCUS_FIVE_LAYER", "FOCUS_SHOWN", PUBLISHED, "FOCUS_GLASS", "FOCUS_LINED_GLASS"]
     }
     fn features_used(&self, values: &Values, _context: &EffectContext<'_>) -> u32 {
         let method = if values.choice("method") == "five_layer" { FIVE_LAYER } else { 0 };
