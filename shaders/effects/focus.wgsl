@@ -10,6 +10,8 @@ struct FocusParams {
     slopes_px: vec2<f32>,
     // Largest diameters before and behind, in pixels.
     most_px: vec2<f32>,
+    // Largest radii of the scene, before and behind.
+    widest_px: vec2<f32>,
     // Most taps of a pixel.
     taps: u32,
     // Tiles to each side that a blur can come from.

@@ -66,19 +66,22 @@ fn find_widest(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32>
 // The same of all tiles whose circles reach this one.
 @fragment
 fn find_reaching(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let own = vec2<i32>(position.xy);
-    let count = vec2<i32>(textureDimensions(widest));
+    return vec4<f32>(reaching_of(vec2<i32>(position.xy), widest), 0.0, 0.0);
+}
+
+fn reaching_of(own: vec2<i32>, radii_of: texture_2d<f32>) -> vec2<f32> {
+    let count = vec2<i32>(textureDimensions(radii_of));
     let low = max(own - i32(focus_params.tiles), vec2<i32>(0));
     let high = min(own + i32(focus_params.tiles), count - 1);
     var reaching = vec2<f32>(0.0);
     for (var y = low.y; y <= high.y; y++) {
         for (var x = low.x; x <= high.x; x++) {
             let between = max(abs(vec2<i32>(x, y) - own) - 1, vec2<i32>(0)) * TILE;
-            let radii = textureLoad(widest, vec2<i32>(x, y), 0).xy;
+            let radii = textureLoad(radii_of, vec2<i32>(x, y), 0).xy;
             reaching = max(reaching, select(vec2<f32>(0.0), radii, radii >= vec2<f32>(length(vec2<f32>(between)))));
         }
     }
-    return vec4<f32>(reaching, 0.0, 0.0);
+    return reaching;
 }
 
 // How far from a pixel things lie that matter to it.
@@ -188,13 +191,11 @@ fn pack_fields(fields: Fields) -> vec4<u32> {
 }
 
 // Fields of pixels around are one pixel's with other taps: their mean is less noisy. What is sharp stays as it is.
-@fragment
-fn compose_fields(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let own = vec2<i32>(position.xy);
+fn evened_fields(own: vec2<i32>) -> Fields {
     let circle = circle_at(own);
     let reach = reach_px(own, circle);
     let sharp = textureLoad(color, own, 0);
-    if reach < LEAST_RADIUS_PX { return finished(sharp); }
+    if reach < LEAST_RADIUS_PX { return Fields(vec4<f32>(0.0), sharp); }
     let last = vec2<i32>(view.tile_size_px) - 1;
     let is_near = circle.radius_px < -SAME_PX;
     let blurred = select(reach, -circle.radius_px, is_near);
@@ -222,5 +223,11 @@ fn compose_fields(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f
     }
     near /= f32(side * side);
     far = select(far / max(fars, 1.0), sharp, is_sharp);
-    return finished(near + (1.0 - near.a) * far);
+    return Fields(near, far);
+}
+
+@fragment
+fn compose_fields(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let fields = evened_fields(vec2<i32>(position.xy));
+    return finished(fields.near + (1.0 - fields.near.a) * fields.far);
 }

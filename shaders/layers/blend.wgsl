@@ -2,10 +2,6 @@
 // shaded from its id and blended until next to no light comes through. Nothing but the surfaces that count is ever shaded.
 // SORTED: lists are in order already, since fragments ask those of other pixels.
 
-@group(2) @binding(0) var<uniform> layers: LayerBand;
-@group(2) @binding(1) var<storage, read_write> layer_counts: array<u32>;
-@group(2) @binding(2) var<storage, read_write> layer_starts: array<u32>;
-@group(2) @binding(3) var<storage, read_write> layer_pool: array<vec2<u32>>;
 @group(2) @binding(4) var color: texture_2d<f32>;
 @group(2) @binding(5) var geometry: texture_2d<u32>;
 

@@ -216,6 +216,13 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     }
     let picture = draw(&mut engine, args, &|| false)?;
     let total_ms = ms_since(start);
+    if engine.layers_are_merged(&args.request())? {
+        tell(format!(
+            "{}: warning: dofPost blurs what is transparent by its nearest surfaces alone: lists of all surfaces take more memory than \
+             transparency.memory_mb or the device allows",
+            args.style
+        ));
+    }
 
     let mut frame_ms = Vec::new();
     for _ in 0..args.frames {

@@ -1,12 +1,13 @@
 //! `dofPost`: blurs what is out of focus.
 //!
 //! `gather` is ours, after the fields of [Jimenez2014, throughout]; `five_layer` after [Prost2016 §4.3]; where we differ: see
-//! `shaders/effects/focus_gather.wgsl` and `shaders/effects/focus_layers.wgsl`. How wide things blur is the same for both, and
+//! `shaders/effects/focus_gather.wgsl` and `shaders/effects/focus_layers.wgsl`. What is transparent is gathered from its lists, where a
+//! frame keeps them: `shaders/effects/focus_glass.wgsl`. How wide things blur is the same for both, and
 //! for the truth, which bends lines of sight to it: `src/reference/lens.rs`. Twin: `tests/twins/focus.rs`.
 
 use glam::DVec3;
 
-use super::{EffectAov, EffectContext, EffectPass, PassTarget, PostEffect};
+use super::{EffectAov, EffectContext, EffectPass, ListsRead, PassTarget, PostEffect};
 use crate::config::param::{Length, Param, Selector, Value, Values};
 use crate::gpu::{GpuStruct, StructInfo, Wgsl};
 use crate::{gpu_struct, wgsl};
@@ -164,6 +165,8 @@ gpu_struct! {
         pub slopes_px: [f32; 2],
         /// Largest diameters before and behind, in pixels.
         pub most_px: [f32; 2],
+        /// Largest radii of the scene, before and behind.
+        pub widest_px: [f32; 2],
         /// Most taps of a pixel.
         pub taps: u32,
         /// Tiles to each side that a blur can come from.
@@ -178,6 +181,10 @@ pub struct Focus;
 const FIVE_LAYER: u32 = 1;
 /// Colours instead of the picture.
 const SHOWS_LAYERS: u32 = 1 << 1;
+/// Lists of what is transparent.
+const GLASS: u32 = 1 << 3;
+/// The same, and lines that were drawn before.
+const LINED_GLASS: u32 = 1 << 4;
 
 impl PostEffect for Focus {
     fn name(&self) -> &'static str {
@@ -197,9 +204,27 @@ impl PostEffect for Focus {
         const GATHER: &[Wgsl] =
             &[wgsl!("lib/noise.wgsl"), wgsl!("effects/focus_gather.wgsl"), wgsl!("effects/focus.wgsl")];
         const SHOWN: &[Wgsl] = &[wgsl!("effects/focus.wgsl")];
+        const GLASS: &[Wgsl] = &[
+            wgsl!("lib/noise.wgsl"),
+            wgsl!("lib/layers.wgsl"),
+            wgsl!("effects/focus_gather.wgsl"),
+            wgsl!("effects/focus_glass.wgsl"),
+            wgsl!("effects/focus_no_lines.wgsl"),
+            wgsl!("effects/focus.wgsl"),
+        ];
+        const LINED_GLASS: &[Wgsl] = &[
+            wgsl!("lib/noise.wgsl"),
+            wgsl!("lib/layers.wgsl"),
+            wgsl!("effects/focus_gather.wgsl"),
+            wgsl!("effects/focus_glass.wgsl"),
+            wgsl!("effects/focus_lines.wgsl"),
+            wgsl!("effects/focus.wgsl"),
+        ];
         match features {
             _ if features & SHOWS_LAYERS != 0 => SHOWN,
             _ if features & FIVE_LAYER != 0 => LAYERS,
+            _ if features & self::LINED_GLASS != 0 => LINED_GLASS,
+            _ if features & self::GLASS != 0 => GLASS,
             _ => GATHER,
         }
     }
@@ -211,10 +236,12 @@ impl PostEffect for Focus {
         let circles = Circles::new(values, context).unwrap_or(nothing);
         let floats = |[a, b]: [f64; 2]| [a as f32, b as f32];
         let reach_px = 0.5 * circles.most_px[0].max(circles.most_px[1]);
+        let (front, back) = (context.depths.front(), context.depths.back());
         bytemuck::bytes_of(&FocusParams {
             sharp: floats(circles.sharp),
             slopes_px: floats(circles.slopes_px),
             most_px: floats(circles.most_px),
+            widest_px: floats([-circles.diameter_px(front), circles.diameter_px(back)].map(|px| 0.5 * px.max(0.0))),
             taps: TAPS,
             tiles: (reach_px / f64::from(TILE_PX)).ceil() as u32 + 1,
         })
@@ -258,14 +285,50 @@ impl PostEffect for Focus {
             end("focused", "compose_fields"),
         ];
         const SHOWN: &[EffectPass] = &[end("layers_shown", "show_layers")];
+        const GLASS: &[EffectPass] = &[
+            own("circles", "find_circles"),
+            of_tiles("widest", "find_widest"),
+            of_tiles("reaching", "find_reaching"),
+            own("fields", "gather_fields"),
+            of_tiles("glass_widest", "find_glass_widest"),
+            of_tiles("glass_reaching", "find_glass_reaching"),
+            own("near_glass", "gather_near_glass"),
+            own("far_glass", "gather_far_glass"),
+            end("focused_glass", "compose_glass"),
+        ];
         match features {
             _ if features & SHOWS_LAYERS != 0 => SHOWN,
             _ if features & FIVE_LAYER != 0 => LAYERS,
+            _ if features & (self::GLASS | LINED_GLASS) != 0 => GLASS,
             _ => GATHER,
         }
     }
-    fn aov(&self) -> Option<EffectAov> {
-        Some(EffectAov { name: "coc", entry: "focus_aov" })
+    fn unread(&self, features: u32, pass: &EffectPass) -> &'static [&'static str] {
+        let is_lined = self.reads_lists(features).is_some_and(|read| read.lines);
+        match pass.name {
+            "glass_widest" | "glass_reaching" => {
+                &["geometry", "color", "ids", "circles", "widest", "reaching", "fields"]
+            }
+            "near_glass" | "far_glass" => {
+                &["geometry", "color", "ids", "widest", "reaching", "glass_widest", "near_glass"]
+            }
+            "focused_glass" if is_lined => &["geometry", "ids", "widest", "glass_widest", "glass_reaching"],
+            "focused_glass" => &["ids", "widest", "glass_widest", "glass_reaching"],
+            _ => &[],
+        }
+    }
+    fn aov(&self, features: u32) -> Option<EffectAov> {
+        let entry = if self.reads_lists(features).is_some() { "glass_aov" } else { "focus_aov" };
+        Some(EffectAov { name: "coc", entry })
+    }
+    fn with_lists(&self, features: u32, lines: bool) -> Option<u32> {
+        let is_gather = features & (FIVE_LAYER | SHOWS_LAYERS) == 0;
+        is_gather.then_some(features | if lines { LINED_GLASS } else { GLASS })
+    }
+    fn reads_lists(&self, features: u32) -> Option<ListsRead> {
+        let is_gather = features & (FIVE_LAYER | SHOWS_LAYERS) == 0;
+        let read = ListsRead { lines: features & LINED_GLASS != 0 };
+        (is_gather && features & (GLASS | LINED_GLASS) != 0).then_some(read)
     }
     fn changes_nothing(&self, values: &Values, context: &EffectContext<'_>) -> Option<&'static str> {
         if values.choice("show") == "layers" {
@@ -277,7 +340,7 @@ impl PostEffect for Focus {
         (widest_px < LEAST_PX).then_some("nothing of the scene is blurred by half a pixel")
     }
     fn features(&self) -> &'static [&'static str] {
-        &["FOCUS_FIVE_LAYER", "FOCUS_SHOWN", PUBLISHED]
+        &["FOCUS_FIVE_LAYER", "FOCUS_SHOWN", PUBLISHED, "FOCUS_GLASS", "FOCUS_LINED_GLASS"]
     }
     fn features_used(&self, values: &Values, _context: &EffectContext<'_>) -> u32 {
         let method = if values.choice("method") == "five_layer" { FIVE_LAYER } else { 0 };

@@ -92,6 +92,13 @@ pub struct EffectAov {
     pub entry: &'static str,
 }
 
+/// What an effect reads beside the opaque picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ListsRead {
+    /// Whether lines as well, and the surfaces that they are on.
+    pub lines: bool,
+}
+
 /// One way to change the picture.
 pub trait PostEffect: Sync {
     /// Its name in style files.
@@ -124,13 +131,27 @@ pub trait PostEffect: Sync {
     fn reach_px(&self, values: &Values, context: &EffectContext<'_>) -> u32;
     /// Its passes with such features, in order.
     fn passes(&self, features: u32) -> &'static [EffectPass];
+    /// Textures that one of them does not read, of `geometry`, `color`, `ids` and earlier passes. Some adapters bind no more than 16
+    /// at once, those of objects among them.
+    fn unread(&self, _features: u32, _pass: &EffectPass) -> &'static [&'static str] {
+        &[]
+    }
     /// The fragment entry that stands in for the last one where a later effect must know how deep lies what it draws: it
     /// leaves the surfaces of all pixels as well.
     fn surfaces_entry(&self) -> Option<&'static str> {
         None
     }
-    /// What it finds, as one number a pixel; -1 where nothing is.
-    fn aov(&self) -> Option<EffectAov> {
+    /// What it finds with such features, as one number a pixel; -1 where nothing is.
+    fn aov(&self, _features: u32) -> Option<EffectAov> {
+        None
+    }
+    /// The features with which it reads the lists of what is transparent, each surface by its own depth, where values with such
+    /// features can; `lines` says whether effects drew any between layers and it. It comes last then.
+    fn with_lists(&self, _features: u32, _lines: bool) -> Option<u32> {
+        None
+    }
+    /// Whether it reads lists with such features, and lines.
+    fn reads_lists(&self, _features: u32) -> Option<ListsRead> {
         None
     }
     /// Why such values change nothing in the picture, if so: the effect is then left out.

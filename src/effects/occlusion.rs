@@ -150,7 +150,7 @@ impl PostEffect for AmbientOcclusion {
         let is_on = |feature| features & bit(feature) != 0;
         if is_on(IS_COARSE) && !is_on(FINE) { COARSE } else { EVERY }
     }
-    fn aov(&self) -> Option<EffectAov> {
+    fn aov(&self, _features: u32) -> Option<EffectAov> {
         Some(EffectAov { name: "ao", entry: "occlusion_aov" })
     }
     fn changes_nothing(&self, values: &Values, context: &EffectContext<'_>) -> Option<&'static str> {

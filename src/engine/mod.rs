@@ -326,6 +326,17 @@ impl Engine {
         })
     }
 
+    /// Whether depth of field blurs what is transparent as one, by the nearest surface of each pixel, since the lists of all its surfaces
+    /// take more than `transparency.memory_mb`, or than a buffer of the device. Known when a frame was drawn.
+    ///
+    /// # Errors
+    /// As [`Engine::draw`].
+    pub fn layers_are_merged(&mut self, request: &Request) -> Result<bool, GpuError> {
+        self.with_input(request, |renderer, input| {
+            Ok(renderer.layers_are_merged(&FrameInput { tile: Engine::first_tile(request), ..input.clone() }))
+        })
+    }
+
     /// The passes that a frame has and why, and those that are left out and why, without drawing any. Of a picture in tiles it
     /// is the frame of the first tile, without what it shares with its neighbours.
     ///
@@ -381,7 +392,7 @@ impl Engine {
         let without = |value: f32| ids.iter().map(move |id| if *id == 0 { -1.0 } else { value }).collect::<Vec<f32>>();
         let (mut ao, mut coc) = (without(1.0), without(0.0));
         for (effect, values) in found {
-            match EFFECTS[effect].aov().map(|aov| aov.name) {
+            match EFFECTS[effect].aov(0).map(|aov| aov.name) {
                 Some("ao") => {
                     ao.iter_mut().zip(values).filter(|(all, _)| **all > 0.0).for_each(|(all, one)| *all *= one)
                 }

@@ -144,6 +144,7 @@ impl Needs {
             encode: false,
             geometry: false,
             layers: None,
+            keeps_layers: false,
         };
         Needs { kinds: objects.kinds, key, layered: materials.has_layers(), num_materials: materials.common.len() }
     }

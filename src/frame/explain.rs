@@ -76,6 +76,7 @@ pub fn steps(gpu: &Gpu, plan: &Plan, input: &FrameInput<'_>, counts: [u64; 3]) -
         count => {
             (1 + chain.surfaces.min(1)) as u64 * bytes_of(size, GEOMETRY_FORMAT)
                 + count.min(2) as u64 * bytes_of(size, COLOR_FORMAT)
+                + if chain.lines { 2 * (bytes_of(size, GEOMETRY_FORMAT) + bytes_of(size, COLOR_FORMAT)) } else { 0 }
         }
     };
     let beside = if of_effects > 0 { ", with the surface beside it for post effects" } else { "" };
@@ -153,16 +154,21 @@ fn list_steps(layers: &LayersPlan, size: [u32; 2]) -> Vec<Step> {
     ];
     let sorted = layers.halo > 0;
     if sorted {
-        steps.push(Step::drawn(
-            "layers_sorted",
-            size,
-            0,
-            "curvature is found from neighbouring pixels, whose lists must be in order",
-        ));
+        let reason = "curvature is found from neighbouring pixels, whose lists must be in order";
+        steps.push(Step::drawn("layers_sorted", size, 0, reason));
     }
-    let blended = if sorted { "shaded" } else { "sorted, shaded" };
-    let reason = format!("each list is {blended} and blended until no light comes through");
-    steps.push(Step::drawn("layers_blended", size, 0, reason));
+    let shaded = if sorted { "shaded" } else { "sorted, shaded" };
+    steps.push(match layers.apart {
+        Some(_) => {
+            let reason =
+                format!("each list is {shaded} and kept, with 8 bytes more a fragment, for an effect that sees each at its own depth");
+            Step::drawn("layers_kept", size, 0, reason)
+        }
+        None => {
+            let reason = format!("each list is {shaded} and blended until no light comes through");
+            Step::drawn("layers_blended", size, 0, reason)
+        }
+    });
     if layers.leaves_surfaces() {
         let reason = "a post effect follows, which sees the nearest surface";
         steps.push(Step::drawn("layers_nearest", size, 0, reason));

@@ -7,13 +7,20 @@ pub const VERTEX: &str = "fullscreen_vertex";
 
 /// Declares what a full-screen pipeline reads at its own group.
 pub fn layout(gpu: &Gpu, label: &'static str, types: &[wgpu::BindingType]) -> wgpu::BindGroupLayout {
-    let entries: Vec<wgpu::BindGroupLayoutEntry> = types
-        .iter()
-        .zip(0..)
-        .map(|(ty, binding)| wgpu::BindGroupLayoutEntry {
+    layout_at(gpu, label, (0..).zip(types.iter().copied()))
+}
+
+/// The same with bindings of its own.
+pub fn layout_at(
+    gpu: &Gpu,
+    label: &'static str,
+    bindings: impl Iterator<Item = (u32, wgpu::BindingType)>,
+) -> wgpu::BindGroupLayout {
+    let entries: Vec<wgpu::BindGroupLayoutEntry> = bindings
+        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: *ty,
+            ty,
             count: None,
         })
         .collect();

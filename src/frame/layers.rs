@@ -4,6 +4,9 @@
 //! 8 bytes each (depth and id), sorted, and shaded from their ids only as far as light comes through (ours, of the family that
 //! [Maule2014, throughout] surveys). Nothing is dropped: where the pool is too small, the frame tells by how much, the pool
 //! grows and the frame is drawn again; where it would outgrow a binding, the picture is drawn in bands.
+//!
+//! Depth of field reads the lists themselves, with the light of each fragment beside it, instead of a blended picture. That
+//! takes all of them at once: where they would not fit, what is blended is blurred by the depth of its nearest surface.
 
 use super::ShadeKey;
 use super::fullscreen;
@@ -16,8 +19,9 @@ use crate::{gpu_struct, wgsl};
 
 /// Bytes of what a band tells: its fragments, and whether they are more than that word counts.
 const TOTAL_BYTES: u64 = 8;
-/// Bytes of a fragment.
+/// Bytes of a fragment, and of its light where that is kept.
 const FRAGMENT_BYTES: u64 = 8;
+const LIGHT_BYTES: u64 = 8;
 /// Fragments for each pixel that a pool holds before more are known to be there.
 const FIRST_LAYERS: u64 = 4;
 /// How much more than what was needed a pool holds, so that a turned scene does not outgrow it at once.
@@ -56,8 +60,17 @@ pub struct LayersPlan {
     pub write: VisibilityKey,
     /// Post effects before them.
     pub after_effects: usize,
+    /// Whether they stay apart, instead of being blended.
+    pub apart: Option<Apart>,
     /// Whether counts and ids of nearest surfaces are asked for.
     pub for_aovs: bool,
+}
+
+/// How layers stay with their depths until the effect that reads their lists, the last of all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Apart {
+    /// Whether effects draw lines between.
+    pub lines: bool,
 }
 
 /// Where the blended picture goes, and what it is blended over.
@@ -70,8 +83,8 @@ pub struct LayerTargets<'a> {
     pub depth: &'a wgpu::TextureView,
     /// Ids of what is opaque, which become those of the nearest surfaces.
     pub ids: &'a wgpu::TextureView,
-    /// The picture.
-    pub to: &'a wgpu::TextureView,
+    /// The picture; none where layers stay apart.
+    pub to: Option<&'a wgpu::TextureView>,
     /// Its surfaces, for effects that follow.
     pub to_geometry: Option<&'a wgpu::TextureView>,
     /// Whether the picture is cleared first.
@@ -109,6 +122,10 @@ pub struct Layers {
     readable: Option<(wgpu::Buffer, u64)>,
     /// Fragments that the pool holds.
     capacity: u64,
+    /// Whether it holds their light as well.
+    keeps_light: bool,
+    /// Whether the lists of a picture of this size are too many to be kept at once.
+    is_too_much: bool,
     num_bands: u32,
     /// Rows that a band holds beyond each of its ends.
     halo: u32,
@@ -116,6 +133,7 @@ pub struct Layers {
     room: Option<(wgpu::BindGroupLayout, wgpu::ComputePipeline)>,
     nearest: Option<wgpu::RenderPipeline>,
     slots: Vec<BandSlot>,
+    lists_params: Option<KeptBuffer>,
     num_totals: u64,
     /// The counts of all bands, where AOVs ask for them.
     all_counts: Option<wgpu::Buffer>,
@@ -148,6 +166,42 @@ fn band_layout(gpu: &Gpu, label: &'static str, textures: &[wgpu::TextureSampleTy
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
 }
 
+fn fragment_bytes(keeps_light: bool) -> u64 {
+    FRAGMENT_BYTES + if keeps_light { LIGHT_BYTES } else { 0 }
+}
+
+/// Bands of which each has as many counts as fit a binding.
+fn bands_of_counts(size: [u32; 2], limit: u64, halo: u32) -> u32 {
+    let [row, halo] = [1, 2 * halo].map(|rows| u64::from(rows) * u64::from(size[0]) * 4);
+    (u64::from(size[1]) * row).div_ceil(limit.saturating_sub(halo).max(1)).max(1) as u32
+}
+
+fn band_of(size: [u32; 2], rows: &std::ops::Range<u32>, capacity: u64) -> LayerBand {
+    LayerBand {
+        width: size[0],
+        first_pixel: rows.start * size[0],
+        num_pixels: (rows.end - rows.start) * size[0],
+        capacity: capacity as u32,
+    }
+}
+
+/// What an effect binds that reads lists, with lines and their surfaces where there are any.
+pub fn lists_layout(gpu: &Gpu, lines: bool) -> wgpu::BindGroupLayout {
+    let stage = wgpu::ShaderStages::FRAGMENT;
+    let read = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Storage { read_only: true },
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    let mut entries = vec![plain(0, stage, fullscreen::UNIFORM)];
+    entries.extend((1..4).map(|binding| plain(binding, stage, read)));
+    if lines {
+        let types = [wgpu::TextureSampleType::Float { filterable: false }, wgpu::TextureSampleType::Uint];
+        entries.extend((4..).zip(types).map(|(binding, of)| plain(binding, stage, fullscreen::texture(of))));
+    }
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("lists"), entries: &entries })
+}
+
 /// What counting and writing bind.
 pub fn raster_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     band_layout(gpu, "layers", &[wgpu::TextureSampleType::Depth])
@@ -173,9 +227,16 @@ impl LayersPlan {
         finish: Finish,
         surfaces: bool,
         after_effects: usize,
+        apart: Option<Apart>,
     ) -> LayersPlan {
-        let shade =
-            ShadeKey { layers: Some((finish, surfaces)), hulls: false, encode: false, geometry: true, ..shade.clone() };
+        let shade = ShadeKey {
+            layers: Some((finish, surfaces)),
+            keeps_layers: apart.is_some(),
+            hulls: false,
+            encode: false,
+            geometry: true,
+            ..shade.clone()
+        };
         let raster = |drawn| VisibilityKey { drawn, hulls: false, ..seen };
         LayersPlan {
             halo: u32::from(shade.asks_neighbours()),
@@ -183,6 +244,7 @@ impl LayersPlan {
             count: raster(Drawn::CountedLayers),
             write: raster(Drawn::WrittenLayers),
             after_effects,
+            apart,
             for_aovs: false,
         }
     }
@@ -239,20 +301,26 @@ impl Layers {
     ///
     /// # Errors
     /// [`GpuError::TooMany`] where a row of the picture alone outgrows a binding.
-    fn fit(&mut self, gpu: &Gpu, size: [u32; 2], limit: u64, samples: u32, halo: u32) -> Result<(), GpuError> {
-        let most = limit / FRAGMENT_BYTES;
+    fn fit(&mut self, gpu: &Gpu, size: [u32; 2], limit: u64, samples: u32, plan: &LayersPlan) -> Result<(), GpuError> {
+        let (keeps_light, halo) = (plan.apart.is_some(), plan.halo);
+        let each = fragment_bytes(keeps_light);
+        let most = limit / each;
+        if keeps_light != self.keeps_light {
+            self.keeps_light = keeps_light;
+            self.capacity = self.capacity.min(most);
+            self.pool = None;
+        }
         let pixels = u64::from(size[0]) * u64::from(size[1]);
         if self.size != size || self.halo != halo || self.num_bands == 0 {
-            // Counts of a band must fit a binding, too.
-            let halo_bytes = u64::from(2 * halo) * u64::from(size[0]) * 4;
-            self.num_bands = (pixels * 4).div_ceil(limit.saturating_sub(halo_bytes).max(1)).max(1) as u32;
+            self.num_bands = bands_of_counts(size, limit, halo);
+            self.is_too_much = false;
             (self.size, self.halo) = (size, halo);
             self.capacity = self.capacity.max((pixels / u64::from(self.num_bands)) * FIRST_LAYERS).min(most);
             self.pool = None;
             (self.counts, self.starts) = (None, None);
         }
         if self.num_bands > size[1] {
-            let bytes = self.capacity * FRAGMENT_BYTES * u64::from(self.num_bands) / u64::from(size[1].max(1));
+            let bytes = self.capacity * each * u64::from(self.num_bands) / u64::from(size[1].max(1));
             return Err(GpuError::TooMany {
                 what: "layers of one row, which transparency.memory_mb limits, too,",
                 count: self.num_bands as usize,
@@ -271,7 +339,7 @@ impl Layers {
         };
         fit(&mut self.counts, "layer counts", band_bytes);
         fit(&mut self.starts, "layer starts", band_bytes);
-        fit(&mut self.pool, "layers", self.capacity.max(1) * FRAGMENT_BYTES);
+        fit(&mut self.pool, "layers", self.capacity.max(1) * each);
         fit(&mut self.total, "layer total", 16);
         let totals = u64::from(samples) * u64::from(self.num_bands);
         if self.readable.as_ref().is_none_or(|(_, count)| *count < totals) {
@@ -310,12 +378,7 @@ impl Layers {
                 continue;
             }
             let held = rows.start.saturating_sub(self.halo)..(rows.end + self.halo).min(self.size[1]);
-            let band = LayerBand {
-                width: self.size[0],
-                first_pixel: held.start * self.size[0],
-                num_pixels: (held.end - held.start) * self.size[0],
-                capacity: self.capacity as u32,
-            };
+            let band = band_of(self.size, &held, self.capacity);
             let params = slot.params.get_or_insert_with(|| KeptBuffer::uniform("layers"));
             let params = params.set(gpu, bytemuck::bytes_of(&band), 16)?;
             let stored = |last: Vec<(u32, Bound)>| {
@@ -368,7 +431,26 @@ impl Layers {
         samples: u32,
         plan: &LayersPlan,
     ) -> Result<(), GpuError> {
-        self.fit(gpu, size, most_bytes(gpu, memory_bytes), samples, plan.halo)
+        self.fit(gpu, size, most_bytes(gpu, memory_bytes), samples, plan)
+    }
+
+    /// Whether the lists of a picture of this size can be kept at once, as far as is known.
+    pub fn can_keep(&self, gpu: &Gpu, size: [u32; 2], memory_bytes: u64) -> bool {
+        bands_of_counts(size, most_bytes(gpu, memory_bytes), 0) == 1 && !(self.size == size && self.is_too_much)
+    }
+
+    /// The lists of the whole picture, in the order of [`lists_layout`]; none before they are made.
+    ///
+    /// # Errors
+    /// Never for uniforms of a fixed size.
+    pub fn lists(&mut self, gpu: &Gpu) -> Result<Option<Vec<Bound>>, GpuError> {
+        let (Some(counts), Some(starts), Some(pool)) = (&self.counts, &self.starts, &self.pool) else {
+            return Ok(None);
+        };
+        let band = band_of(self.size, &(0..self.size[1]), self.capacity);
+        let params = self.lists_params.get_or_insert_with(|| KeptBuffer::uniform("lists"));
+        let params = params.set(gpu, bytemuck::bytes_of(&band), 16)?;
+        Ok(Some([params, counts.clone(), starts.clone(), pool.clone()].map(Bound::Buffer).to_vec()))
     }
 
     /// Draws the layers of one sample.
@@ -505,8 +587,13 @@ impl Layers {
         if needed <= self.capacity {
             return Ok(true);
         }
-        let most = most_bytes(gpu, memory_bytes) / FRAGMENT_BYTES;
         let wanted = (needed as f64 * SLACK) as u64;
+        let most = most_bytes(gpu, memory_bytes) / fragment_bytes(self.keeps_light);
+        if wanted > most && self.keeps_light {
+            // Drawn again without their light, which may fit at once.
+            self.is_too_much = true;
+            return Ok(false);
+        }
         if wanted > most {
             self.num_bands = (u64::from(self.num_bands) * wanted.div_ceil(most.max(1))).min(u64::from(u32::MAX)) as u32;
             (self.counts, self.starts) = (None, None);

@@ -174,7 +174,8 @@ struct Plan {
 }
 
 impl Plan {
-    fn new(gpu: &Gpu, needs: &Needs, input: &FrameInput<'_>, quality: ShadowQuality) -> Plan {
+    /// `can_keep` says whether lists of what is transparent can be kept for effects that read them.
+    fn new(gpu: &Gpu, needs: &Needs, input: &FrameInput<'_>, quality: ShadowQuality, can_keep: bool) -> Plan {
         let samples = input.samples.clamp(1, MAX_SAMPLES);
         let direct = samples == 1 && !input.wide;
         let map_size = quality.map_size(gpu, input.size[1]);
@@ -195,13 +196,16 @@ impl Plan {
         let drawn = if needs.layered { Drawn::Opaque } else { Drawn::All };
         let seen = VisibilityKey { hulls: shade.hulls, orthographic, light: false, drawn };
         let before = input.effects.iter().take_while(|effect| EFFECTS[effect.effect].is_before_layers()).count();
-        let effects = post::keys(input.effects, orthographic, direct, needs.layered.then_some(before));
+        let mut effects = post::keys(input.effects, orthographic, direct, needs.layered.then_some(before));
+        let may_keep = needs.layered && can_keep && input.layer_method == LayerMethod::Packed;
+        let apart = if may_keep { post::keep_apart(&mut effects, before) } else { None };
         let finish = match (before == input.effects.len(), direct) {
             (false, _) => Finish::Next,
             (true, false) => Finish::Add,
             (true, true) => Finish::Encode,
         };
-        let layers = needs.layered.then(|| LayersPlan::new(&shade, seen, finish, finish == Finish::Next, before));
+        let surfaces = apart.map_or(finish == Finish::Next, |apart| apart.lines);
+        let layers = needs.layered.then(|| LayersPlan::new(&shade, seen, finish, surfaces, before, apart));
         let bkb = match input.layer_method {
             LayerMethod::Bkb { k, form } if needs.layered => {
                 let shade = ShadeKey { hulls: false, encode: false, geometry: false, ..shade.clone() };
@@ -237,19 +241,31 @@ impl Plan {
         VisibilityKey { hulls: false, orthographic: shadow.light.orthographic > 0.5, light: true, ..self.seen }
     }
 
+    /// Whether layers stay apart for an effect that reads their lists.
+    fn is_apart(&self) -> bool {
+        self.layers.as_ref().is_some_and(|layers| layers.apart.is_some())
+    }
+
     /// Where layers stand among the effects.
     fn layers_at(&self) -> Option<LayersAt> {
-        self.layers
-            .as_ref()
-            .map(|layers| LayersAt { effects: layers.after_effects, surfaces: layers.leaves_surfaces() })
+        self.layers.as_ref().map(|layers| LayersAt {
+            effects: layers.after_effects,
+            surfaces: layers.leaves_surfaces(),
+            apart: layers.apart.is_some(),
+        })
     }
 
     /// How often the picture of a sample is changed.
     fn chain(&self) -> Chain {
         let at = self.layers_at();
+        if let Some(LayersPlan { after_effects, apart: Some(apart), .. }) = &self.layers {
+            let surfaces = post::num_left(&self.effects[..*after_effects]);
+            return Chain { pictures: after_effects + 1, surfaces, lines: apart.lines };
+        }
         Chain {
             pictures: self.effects.len() + usize::from(at.is_some()),
             surfaces: post::num_left(&self.effects) + usize::from(at.is_some_and(|at| at.surfaces)),
+            lines: false,
         }
     }
 }
@@ -322,7 +338,7 @@ impl Renderer {
     ) -> Result<(), GpuError> {
         check_size(&self.gpu, input)?;
         let needs = self.contents.needs_of(&self.gpu, list, materials)?;
-        self.build(&needs, &Plan::new(&self.gpu, &needs, input, self.shadow_quality), input.wide)
+        self.build(&needs, &self.plan(&needs, input), input.wide)
     }
 
     /// Builds all pipelines anew from the shaders as they are now.
@@ -348,9 +364,22 @@ impl Renderer {
     /// [`GpuError`] where the picture does not fit the device.
     pub fn explain(&self, input: &FrameInput<'_>) -> Result<Vec<Step>, GpuError> {
         check_size(&self.gpu, input)?;
-        let plan = Plan::new(&self.gpu, &self.contents.needs(), input, self.shadow_quality);
+        let plan = self.plan(&self.contents.needs(), input);
         let [spheres, cylinders] = self.object_counts().map(u64::from);
         Ok(explain::steps(&self.gpu, &plan, input, [spheres, cylinders, self.num_triangles()]))
+    }
+
+    /// Whether a frame blurs layers as they are blended, since lists of them all are more than the device holds at once. Known when it was
+    /// drawn.
+    pub fn layers_are_merged(&self, input: &FrameInput<'_>) -> bool {
+        let needs = self.contents.needs();
+        let wanted = Plan::new(&self.gpu, &needs, input, self.shadow_quality, true);
+        wanted.is_apart() && !self.plan(&needs, input).is_apart()
+    }
+
+    fn plan(&self, needs: &Needs, input: &FrameInput<'_>) -> Plan {
+        let can_keep = self.layers.can_keep(&self.gpu, input.drawn_size(), input.layer_bytes);
+        Plan::new(&self.gpu, needs, input, self.shadow_quality, can_keep)
     }
 
     fn build(&mut self, needs: &Needs, plan: &Plan, wide: bool) -> Result<(), GpuError> {
@@ -421,14 +450,14 @@ impl Renderer {
 
         // What this frame needs, and what of it is not there yet.
         let needs = self.contents.needs();
-        let mut plan = Plan::new(&gpu, &needs, input, self.shadow_quality);
+        let mut plan = self.plan(&needs, input);
         if found.is_some() {
             plan.ask_for_aovs();
         }
         self.build(&needs, &plan, input.wide)?;
         let output_format = if input.wide { OUTPUT_16 } else { OUTPUT_8 };
         self.targets.fit(&gpu, input.drawn_size(), output_format, !plan.direct, plan.chain());
-        let effect_bytes = self.post.fit(&gpu, input.drawn_size(), input.effects);
+        let effect_bytes = self.post.fit(&gpu, input.drawn_size(), &plan.effects);
         self.fit_shadows(&plan);
         let view = input.view();
         match plan.lists() {
@@ -481,15 +510,20 @@ impl Renderer {
         let Some((shade_group, background)) = self.shade.bind(&gpu, &plan.shade, &inputs)? else { return Ok(()) };
         let finished = light.as_ref().unwrap_or(&output);
         let shaded = self.targets.shaded_views();
-        let post = shaded.as_ref().map(|[geometry, colors]| PostTargets {
+        let post = shaded.as_ref().map(|shaded| PostTargets {
             ids: &ids,
-            geometry,
-            colors,
+            geometry: &shaded.geometry,
+            colors: &shaded.colors,
+            line_geometry: &shaded.line_geometry,
+            line_colors: &shaded.line_colors,
             last: finished,
             output: &background,
         });
         let effect_groups: Option<EffectGroups> = match &post {
-            Some(targets) => self.post.bind(&gpu, input.effects, &plan.effects, targets, plan.layers_at())?,
+            Some(targets) => {
+                let lists = if plan.is_apart() { self.layers.lists(&gpu)? } else { None };
+                self.post.bind(&gpu, input.effects, &plan.effects, targets, (plan.layers_at(), lists))?
+            }
             None => None,
         };
         let layers_group = match plan.lists() {
@@ -543,8 +577,15 @@ impl Renderer {
                     geometry: opaque,
                     depth: &depth,
                     ids: &ids,
-                    to: if is_last { targets.last } else { next },
-                    to_geometry: turn(targets.geometry, 1).filter(|_| !is_last),
+                    to: match &plan.layers {
+                        Some(LayersPlan { apart: Some(_), .. }) => targets.line_colors.first(),
+                        _ if is_last => Some(targets.last),
+                        _ => Some(next),
+                    },
+                    to_geometry: match plan.is_apart() {
+                        true => targets.line_geometry.first(),
+                        false => turn(targets.geometry, 1).filter(|_| !is_last),
+                    },
                     clears: index == 0 || !is_last,
                 };
                 let on = (&scene, objects);

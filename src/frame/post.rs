@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::fullscreen;
+use super::layers::{self, Apart};
 use super::targets::Target;
 use super::visibility::{SceneBindings, Visibility};
-use crate::effects::{EFFECTS, EffectPass, PassTarget, PostEffect};
+use crate::effects::{EFFECTS, EffectPass, ListsRead, PassTarget, PostEffect};
 use crate::gpu::{Bound, Gpu, GpuError, KeptBindGroup, KeptBuffer, Module, PassTimer};
 use crate::wgsl;
 
@@ -68,11 +69,13 @@ pub struct LayersAt {
     pub effects: usize,
     /// Whether they leave the nearest surface for what follows.
     pub surfaces: bool,
+    /// Whether they stay apart until the last effect, and what effects between draw is a picture of lines alone.
+    pub apart: bool,
 }
 
 /// How many pictures, and how many surfaces, were drawn before the effect of an index, after the first.
 fn hops(keys: &[EffectKey], index: usize, layers: Option<LayersAt>) -> [usize; 2] {
-    let layers = layers.filter(|layers| layers.effects <= index);
+    let layers = layers.filter(|layers| layers.effects <= index && !layers.apart);
     [
         index + usize::from(layers.is_some()),
         num_left(&keys[..index]) + usize::from(layers.is_some_and(|layers| layers.surfaces)),
@@ -115,6 +118,18 @@ pub fn keys(effects: &[Effect], orthographic: bool, encode: bool, layers: Option
         .collect()
 }
 
+/// Has the last of some effects read the lists of what is transparent, where it can, and those between it and layers draw lines alone.
+pub fn keep_apart(keys: &mut [EffectKey], after_effects: usize) -> Option<Apart> {
+    let between = keys.len().checked_sub(1)?.checked_sub(after_effects)?;
+    let (last, others) = keys.split_last_mut()?;
+    let lines = between > 0;
+    if !others[after_effects..].iter().all(|key| key.leaves_surfaces) {
+        return None;
+    }
+    last.features = EFFECTS[last.effect].with_lists(last.features, lines)?;
+    Some(Apart { lines })
+}
+
 /// First binding of the textures that an effect's own passes drew.
 const FIRST_OWN_BINDING: u32 = 5;
 
@@ -130,10 +145,23 @@ struct Slot {
     groups: Vec<KeptBindGroup>,
 }
 
-/// What the passes of a frame's effects bind: for each effect, a group for each pass.
-pub type EffectGroups = Vec<Vec<wgpu::BindGroup>>;
+/// What the passes of a frame's effects bind.
+pub struct EffectGroups {
+    /// For each effect, a group for each pass.
+    passes: Vec<Vec<wgpu::BindGroup>>,
+    /// Lists of what is transparent, for the effect that reads them.
+    lists: Option<wgpu::BindGroup>,
+}
+
+impl EffectGroups {
+    /// What an effect of a key binds beside the scene and a pass's own group.
+    fn lists_of(&self, key: &EffectKey) -> Option<&wgpu::BindGroup> {
+        self.lists.as_ref().filter(|_| reads_lists(key).is_some())
+    }
+}
 
 /// What all effects of a frame read and draw to.
+#[derive(Clone, Copy)]
 pub struct PostTargets<'a> {
     /// Ids of the visibility pass.
     pub ids: &'a wgpu::TextureView,
@@ -141,10 +169,49 @@ pub struct PostTargets<'a> {
     pub geometry: &'a [wgpu::TextureView],
     /// The picture that was shaded, and another one where there are more effects than one.
     pub colors: &'a [wgpu::TextureView],
+    /// The nearest surfaces with lines, and pictures of lines, where those are drawn apart.
+    pub line_geometry: &'a [wgpu::TextureView],
+    /// Their pictures.
+    pub line_colors: &'a [wgpu::TextureView],
     /// Where the last effect draws.
     pub last: &'a wgpu::TextureView,
     /// The background, for the last effect.
     pub output: &'a wgpu::Buffer,
+}
+
+impl<'a> PostTargets<'a> {
+    /// The picture and the surfaces that effects before one left to it: of lines alone, where layers stay apart before.
+    fn before(&self, keys: &[EffectKey], index: usize, layers: Option<LayersAt>) -> [Option<&'a wgpu::TextureView>; 2] {
+        if let Some(layers) = layers.filter(|layers| layers.apart && layers.effects <= index) {
+            let between = &keys[layers.effects..index];
+            return [turn(self.line_colors, between.len()), turn(self.line_geometry, num_left(between))];
+        }
+        let [colors, surfaces] = hops(keys, index, layers);
+        [turn(self.colors, colors), turn(self.geometry, surfaces)]
+    }
+
+    /// Where an effect leaves its own.
+    fn after(&self, keys: &[EffectKey], index: usize, layers: Option<LayersAt>) -> [Option<&'a wgpu::TextureView>; 2] {
+        if let Some(layers) = layers.filter(|layers| layers.apart && layers.effects <= index) {
+            let between = &keys[layers.effects..index];
+            return [turn(self.line_colors, between.len() + 1), turn(self.line_geometry, num_left(between) + 1)];
+        }
+        let [colors, surfaces] = hops(keys, index, layers);
+        [turn(self.colors, colors + 1), turn(self.geometry, surfaces + 1)]
+    }
+
+    /// What an effect reads: that, or what is opaque alone where it reads lists.
+    fn read_by(
+        &self,
+        keys: &[EffectKey],
+        index: usize,
+        layers: Option<LayersAt>,
+    ) -> [Option<&'a wgpu::TextureView>; 2] {
+        match layers.filter(|layers| layers.apart && index + 1 == keys.len()) {
+            Some(layers) => [turn(self.colors, layers.effects), self.geometry.first()],
+            None => self.before(keys, index, layers),
+        }
+    }
 }
 
 /// Pipelines and textures of post effects.
@@ -152,6 +219,7 @@ pub struct PostTargets<'a> {
 pub struct Post {
     pipelines: BTreeMap<EffectKey, Pipelines>,
     slots: Vec<Slot>,
+    lists: KeptBindGroup,
 }
 
 impl Post {
@@ -178,15 +246,15 @@ impl Post {
     }
 
     /// Makes the effects' own textures fit; returns their bytes.
-    pub fn fit(&mut self, gpu: &Gpu, size: [u32; 2], effects: &[Effect]) -> u64 {
-        self.slots.resize_with(effects.len(), || Slot {
+    pub fn fit(&mut self, gpu: &Gpu, size: [u32; 2], keys: &[EffectKey]) -> u64 {
+        self.slots.resize_with(keys.len(), || Slot {
             fits: None,
             params: KeptBuffer::uniform("effect"),
             own: Vec::new(),
             groups: Vec::new(),
         });
-        for (slot, effect) in self.slots.iter_mut().zip(effects) {
-            let passes = EFFECTS[effect.effect].passes(effect.features);
+        for (slot, key) in self.slots.iter_mut().zip(keys) {
+            let passes = EFFECTS[key.effect].passes(key.features);
             if slot.fits == Some((passes, size)) {
                 continue;
             }
@@ -214,18 +282,29 @@ impl Post {
         effects: &[Effect],
         keys: &[EffectKey],
         targets: &PostTargets<'_>,
-        layers: Option<LayersAt>,
+        (layers, lists): (Option<LayersAt>, Option<Vec<Bound>>),
     ) -> Result<Option<EffectGroups>, GpuError> {
         let mut groups = Vec::with_capacity(keys.len());
+        let mut lists_group = None;
         for (index, ((slot, effect), key)) in self.slots.iter_mut().zip(effects).zip(keys).enumerate() {
-            let [colors, surfaces] = hops(keys, index, layers);
-            let inputs = (turn(targets.colors, colors), turn(targets.geometry, surfaces));
-            let (Some(pipelines), (Some(color), Some(geometry))) = (self.pipelines.get(key), inputs) else {
+            let inputs = targets.read_by(keys, index, layers);
+            let (Some(pipelines), [Some(color), Some(geometry)]) = (self.pipelines.get(key), inputs) else {
                 return Ok(None);
             };
+            if let Some(read) = reads_lists(key) {
+                let Some(lists) = &lists else { return Ok(None) };
+                let mut bound = lists.clone();
+                if read.lines {
+                    let [Some(lines), Some(surfaces)] = targets.before(keys, index, layers) else { return Ok(None) };
+                    bound.extend([lines, surfaces].map(|view| Bound::View(view.clone())));
+                }
+                let layout = layers::lists_layout(gpu, read.lines);
+                lists_group = Some(self.lists.get(gpu, "lists", &layout, (0..).zip(bound).collect()));
+            }
             let params = slot.params.set(gpu, &effect.params, 0)?;
             let mut of_effect = Vec::with_capacity(pipelines.len());
-            for (pass, (kept, (layout, _))) in slot.groups.iter_mut().zip(pipelines).enumerate() {
+            let passes = EFFECTS[key.effect].passes(key.features);
+            for (index, ((kept, (layout, _)), pass)) in slot.groups.iter_mut().zip(pipelines).zip(passes).enumerate() {
                 let mut bound = vec![
                     (0, Bound::Buffer(params.clone())),
                     (1, Bound::Buffer(targets.output.clone())),
@@ -233,13 +312,14 @@ impl Post {
                     (3, Bound::View(color.clone())),
                     (4, Bound::View(targets.ids.clone())),
                 ];
-                let earlier = slot.own.iter().take(pass).map(|target| Bound::View(target.view.clone()));
+                let earlier = slot.own.iter().take(index).map(|target| Bound::View(target.view.clone()));
                 bound.extend((FIRST_OWN_BINDING..).zip(earlier));
+                bound.retain(|(binding, _)| is_read(key, pass, *binding));
                 of_effect.push(kept.get(gpu, "effect", layout, bound));
             }
             groups.push(of_effect);
         }
-        Ok(Some(groups))
+        Ok(Some(EffectGroups { passes: groups, lists: lists_group }))
     }
 
     /// Draws all passes of some of the effects for view `view_index`; the first view clears the last target.
@@ -256,25 +336,26 @@ impl Post {
         timer: &mut Option<PassTimer>,
     ) {
         let nothing = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
-        let chain = self.slots.iter().zip(keys).zip(groups).enumerate();
-        for (index, ((slot, key), groups)) in chain.filter(|(index, _)| drawn.contains(index)) {
+        let chain = self.slots.iter().zip(keys).zip(&groups.passes).enumerate();
+        for (index, ((slot, key), of_passes)) in chain.filter(|(index, _)| drawn.contains(index)) {
             let Some(pipelines) = self.pipelines.get(key) else { return };
-            let [colors, surfaces] = hops(keys, index, layers);
+            let [next, surfaces] = targets.after(keys, index, layers);
             let last = match key.finish {
-                Finish::Next => turn(targets.colors, colors + 1).map(|color| (color, nothing)),
+                Finish::Next => next.map(|color| (color, nothing)),
                 _ if view_index > 0 => Some((targets.last, wgpu::LoadOp::Load)),
                 _ => Some((targets.last, nothing)),
             };
-            let surfaces = turn(targets.geometry, surfaces + 1).filter(|_| key.leaves_surfaces);
+            let surfaces = surfaces.filter(|_| key.leaves_surfaces);
             let last = last.into_iter().chain(surfaces.map(|surfaces| (surfaces, nothing))).collect();
             let onto = slot.own.iter().map(|target| vec![(&target.view, nothing)]).chain([last]);
             for (((pass, (_, pipeline)), group), onto) in
-                EFFECTS[key.effect].passes(key.features).iter().zip(pipelines).zip(groups).zip(onto)
+                EFFECTS[key.effect].passes(key.features).iter().zip(pipelines).zip(of_passes).zip(onto)
             {
                 let times = timer.as_mut().and_then(|timer| timer.pass(pass.name));
-                let groups: &[(&wgpu::BindGroup, &[u32])] =
-                    &[(&scene.group, &[SceneBindings::offset(view_index)]), (group, &[])];
-                fullscreen::draw_onto(encoder, pass.name, pipeline, groups, &onto, times);
+                let offset = [SceneBindings::offset(view_index)];
+                let mut bound: Vec<(&wgpu::BindGroup, &[u32])> = vec![(&scene.group, &offset), (group, &[])];
+                bound.extend(groups.lists_of(key).map(|lists| (lists, &[][..])));
+                fullscreen::draw_onto(encoder, pass.name, pipeline, &bound, &onto, times);
             }
         }
     }
@@ -297,18 +378,22 @@ impl Post {
         size: [u32; 2],
     ) -> Result<Vec<(usize, wgpu::Texture)>, GpuError> {
         let mut aovs = Vec::new();
-        for (key, groups) in keys.iter().zip(groups) {
+        for (key, of_passes) in keys.iter().zip(&groups.passes) {
             let layout = self.pipelines.get(key).and_then(|pipelines| pipelines.last());
-            let (Some(aov), Some((layout, _)), Some(group)) = (EFFECTS[key.effect].aov(), layout, groups.last()) else {
+            let aov = EFFECTS[key.effect].aov(key.features);
+            let (Some(aov), Some((layout, _)), Some(group)) = (aov, layout, of_passes.last()) else {
                 continue;
             };
-            let layouts = [&visibility.layout, layout];
+            let lists = reads_lists(key).map(|read| layers::lists_layout(gpu, read.lines));
+            let layouts: Vec<_> = [&visibility.layout, layout].into_iter().chain(&lists).collect();
             let pipeline =
                 fullscreen::pipeline(gpu, aov.name, &effect_module(key), aov.entry, &layouts, &[AOV_FORMAT.into()])?;
             let texture = gpu.target(aov.name, size, 1, AOV_FORMAT);
             let target = texture.create_view(&Default::default());
-            let groups: &[(&wgpu::BindGroup, &[u32])] = &[(&scene.group, &[SceneBindings::offset(0)]), (group, &[])];
-            fullscreen::draw(encoder, aov.name, &pipeline, groups, &target, None);
+            let offset = [SceneBindings::offset(0)];
+            let mut bound: Vec<(&wgpu::BindGroup, &[u32])> = vec![(&scene.group, &offset), (group, &[])];
+            bound.extend(groups.lists_of(key).map(|lists| (lists, &[][..])));
+            fullscreen::draw(encoder, aov.name, &pipeline, &bound, &target, None);
             aovs.push((key.effect, texture));
         }
         Ok(aovs)
@@ -328,12 +413,14 @@ pub fn num_left(keys: &[EffectKey]) -> usize {
 fn build(gpu: &Gpu, visibility: &Visibility, key: &EffectKey) -> Result<Pipelines, GpuError> {
     let module = effect_module(key);
     let passes = EFFECTS[key.effect].passes(key.features);
+    let lists = reads_lists(key).map(|read| layers::lists_layout(gpu, read.lines));
     let build = |(index, pass): (usize, &EffectPass)| {
         let uint = fullscreen::texture(wgpu::TextureSampleType::Uint);
         let float = fullscreen::texture(wgpu::TextureSampleType::Float { filterable: false });
         let mut types = vec![fullscreen::UNIFORM, fullscreen::UNIFORM, uint, float, uint];
         types.extend(passes[..index].iter().map(|pass| if is_uint(pass) { uint } else { float }));
-        let layout = fullscreen::layout(gpu, pass.name, &types);
+        let types = (0..).zip(types).filter(|(binding, _)| is_read(key, pass, *binding));
+        let layout = fullscreen::layout_at(gpu, pass.name, types);
         let target: wgpu::ColorTargetState = match pass.target {
             PassTarget::Own { format, .. } => format.into(),
             PassTarget::Picture => target_of(gpu, key.finish),
@@ -341,12 +428,26 @@ fn build(gpu: &Gpu, visibility: &Visibility, key: &EffectKey) -> Result<Pipeline
         let is_last = pass.target == PassTarget::Picture;
         let as_surfaces = EFFECTS[key.effect].surfaces_entry().filter(|_| is_last && key.leaves_surfaces);
         let entry = as_surfaces.unwrap_or(pass.entry);
-        let layouts = [&visibility.layout, &layout];
+        let layouts: Vec<_> = [&visibility.layout, &layout].into_iter().chain(&lists).collect();
         let targets: Vec<_> = [target].into_iter().chain(as_surfaces.map(|_| GEOMETRY_FORMAT.into())).collect();
         let pipeline = fullscreen::pipeline(gpu, pass.name, &module, entry, &layouts, &targets)?;
         Ok((layout, pipeline))
     };
     passes.iter().enumerate().map(build).collect()
+}
+
+/// Whether a pass has a binding of its effect: a uniform, or a texture that it reads.
+fn is_read(key: &EffectKey, pass: &EffectPass, binding: u32) -> bool {
+    let passes = EFFECTS[key.effect].passes(key.features);
+    let name = match binding.checked_sub(FIRST_OWN_BINDING) {
+        Some(own) => passes.get(own as usize).map_or("", |earlier| earlier.name),
+        None => ["", "", "geometry", "color", "ids"][binding as usize],
+    };
+    !EFFECTS[key.effect].unread(key.features, pass).contains(&name)
+}
+
+fn reads_lists(key: &EffectKey) -> Option<ListsRead> {
+    EFFECTS[key.effect].reads_lists(key.features)
 }
 
 fn is_uint(pass: &EffectPass) -> bool {

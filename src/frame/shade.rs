@@ -65,6 +65,9 @@ pub struct ShadeKey {
     /// Layers of what is transparent instead of the nearest surface: where the blended picture goes, and whether its nearest
     /// surface goes beside it.
     pub layers: Option<(Finish, bool)>,
+    /// Whether layers are shaded and kept, each with its own light, instead of being blended; a surface beside them is then that of
+    /// lines.
+    pub keeps_layers: bool,
 }
 
 /// What a style needs of one shader.
@@ -219,7 +222,13 @@ impl Shade {
             bind_group_layouts: &groups,
             immediate_size: 0,
         });
-        let (entry_point, targets) = if let Some((finish, surfaces)) = key.layers {
+        let kept_alone = key.keeps_layers && key.layers.is_some_and(|(_, surfaces)| !surfaces);
+        let (entry_point, targets) = if kept_alone {
+            ("keep_layers", Vec::new())
+        } else if key.keeps_layers && key.layers.is_some() {
+            let formats = [post::COLOR_FORMAT, post::GEOMETRY_FORMAT];
+            ("keep_layers_geometry", formats.map(|format| Some(format.into())).to_vec())
+        } else if let Some((finish, surfaces)) = key.layers {
             let surface = surfaces.then(|| Some(post::GEOMETRY_FORMAT.into()));
             let entry = if surfaces { "blend_layers_geometry" } else { "blend_layers" };
             (entry, std::iter::once(Some(post::target_of(gpu, finish))).chain(surface).collect())
@@ -241,11 +250,15 @@ impl Shade {
                 buffers: &[],
             },
             primitive: Default::default(),
-            // The pass lies behind all that is drawn: only pixels that see something are shaded at all.
-            depth_stencil: key.layers.is_none().then(|| wgpu::DepthStencilState {
+            // The pass lies behind all that is drawn: only pixels that see something are shaded at all. A pass without
+            // another target has this one, and passes everywhere.
+            depth_stencil: (key.layers.is_none() || kept_alone).then(|| wgpu::DepthStencilState {
                 format: DEPTH_FORMAT,
                 depth_write_enabled: Some(false),
-                depth_compare: Some(wgpu::CompareFunction::Less),
+                depth_compare: Some(match kept_alone {
+                    true => wgpu::CompareFunction::Always,
+                    false => wgpu::CompareFunction::Less,
+                }),
                 stencil: Default::default(),
                 bias: Default::default(),
             }),
@@ -443,12 +456,14 @@ impl Shade {
                 ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
             })
         };
-        let attachments: Vec<_> = [to.to].into_iter().chain(to.to_geometry).map(attachment).collect();
+        let attachments: Vec<_> = to.to.into_iter().chain(to.to_geometry).map(attachment).collect();
+        let depth = wgpu::RenderPassDepthStencilAttachment { view: to.depth, depth_ops: None, stencil_ops: None };
+        let name = if key.keeps_layers { "layers_kept" } else { "layers_blended" };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("blend layers"),
+            label: Some(name),
             color_attachments: &attachments,
-            depth_stencil_attachment: None,
-            timestamp_writes: timer.as_mut().and_then(|timer| timer.pass("layers_blended")),
+            depth_stencil_attachment: attachments.is_empty().then_some(depth),
+            timestamp_writes: timer.as_mut().and_then(|timer| timer.pass(name)),
             occlusion_query_set: None,
             multiview_mask: None,
         });
@@ -456,7 +471,7 @@ impl Shade {
         pass.set_bind_group(0, scene, &[SceneBindings::offset(view_index)]);
         pass.set_bind_group(1, inputs, &[]);
         pass.set_bind_group(2, layers, &[]);
-        let width = to.to.texture().width();
+        let width = to.depth.texture().width();
         pass.set_scissor_rect(0, rows.start, width, rows.end - rows.start);
         pass.draw(0..3, 0..1);
     }
@@ -474,10 +489,11 @@ pub fn shade_module(key: &ShadeKey) -> Module {
         );
         module.add(wgsl!("lib/finish.wgsl"));
         module.add(wgsl!("lib/layers.wgsl"));
+        module.add(wgsl!("layers/lists.wgsl"));
         module.add(wgsl!("lib/sort_layers.wgsl"));
         let asks = key.asks_neighbours();
         module.add(if asks { wgsl!("layers/neighbours.wgsl") } else { wgsl!("layers/neighbours_none.wgsl") });
-        module.add(wgsl!("layers/blend.wgsl"));
+        module.add(if key.keeps_layers { wgsl!("layers/keep.wgsl") } else { wgsl!("layers/blend.wgsl") });
     } else if key.geometry {
         module.add(wgsl!("lib/geometry.wgsl"));
         module.add(wgsl!("objects/shade_geometry.wgsl"));

@@ -34,6 +34,8 @@ struct Shaded {
     geometry: Vec<Target>,
     /// Two only where one effect's picture is the next one's.
     colors: Vec<Target>,
+    /// Of each two more only where lines are drawn apart.
+    lines: Option<([Target; 2], [Target; 2])>,
 }
 
 /// How often a picture of one sample is changed after it was shaded.
@@ -43,6 +45,20 @@ pub struct Chain {
     pub pictures: usize,
     /// Which of them leave surfaces of their own.
     pub surfaces: usize,
+    /// Whether lines are drawn apart, as pictures and surfaces of their own.
+    pub lines: bool,
+}
+
+/// What post effects read and draw to.
+pub struct ShadedViews {
+    /// The surfaces of a sample.
+    pub geometry: Vec<wgpu::TextureView>,
+    /// The pictures that effects change in turn.
+    pub colors: Vec<wgpu::TextureView>,
+    /// The same of lines that are drawn apart; empty where none are.
+    pub line_geometry: Vec<wgpu::TextureView>,
+    /// Their pictures.
+    pub line_colors: Vec<wgpu::TextureView>,
 }
 
 struct Set {
@@ -77,7 +93,8 @@ impl Targets {
             former_output.filter(|target| target.texture.format() == output).unwrap_or_else(|| make("output", output));
         let light = light.then(|| former_light.unwrap_or_else(|| make("light", light_format(gpu))));
         let shaded = (chain.pictures > 0).then(|| {
-            let mut shaded = former_shaded.unwrap_or_else(|| Shaded { geometry: Vec::new(), colors: Vec::new() });
+            let none = || Shaded { geometry: Vec::new(), colors: Vec::new(), lines: None };
+            let mut shaded = former_shaded.unwrap_or_else(none);
             let counts = [chain.pictures.min(2), 1 + chain.surfaces.min(1)];
             shaded.colors.truncate(counts[0]);
             shaded.geometry.truncate(counts[1]);
@@ -86,6 +103,11 @@ impl Targets {
             }
             while shaded.geometry.len() < counts[1] {
                 shaded.geometry.push(make("geometry", GEOMETRY_FORMAT));
+            }
+            shaded.lines = shaded.lines.filter(|_| chain.lines);
+            if chain.lines && shaded.lines.is_none() {
+                let two = |label, format| [make(label, format), make(label, format)];
+                shaded.lines = Some((two("line geometry", GEOMETRY_FORMAT), two("line color", COLOR_FORMAT)));
             }
             shaded
         });
@@ -110,10 +132,17 @@ impl Targets {
         Some(self.set.as_ref()?.light.as_ref()?.view.clone())
     }
 
-    /// The surfaces of a sample and the pictures that effects change in turn, if this frame has effects.
-    pub fn shaded_views(&self) -> Option<[Vec<wgpu::TextureView>; 2]> {
+    /// What post effects read and draw to, if this frame has any.
+    pub fn shaded_views(&self) -> Option<ShadedViews> {
         let shaded = self.set.as_ref()?.shaded.as_ref()?;
-        Some([&shaded.geometry, &shaded.colors].map(|of| of.iter().map(|target| target.view.clone()).collect()))
+        let views = |of: &[Target]| of.iter().map(|target| target.view.clone()).collect();
+        let (line_geometry, line_colors) = shaded.lines.as_ref().map_or((&[][..], &[][..]), |(a, b)| (a, b));
+        Some(ShadedViews {
+            geometry: views(&shaded.geometry),
+            colors: views(&shaded.colors),
+            line_geometry: views(line_geometry),
+            line_colors: views(line_colors),
+        })
     }
 
     /// The picture.
@@ -164,6 +193,12 @@ impl Targets {
         if let Some(shaded) = &set.shaded {
             all.push(("geometry", shaded.geometry.iter().map(Target::bytes).sum()));
             all.push(("color", shaded.colors.iter().map(Target::bytes).sum()));
+            all.extend(
+                shaded
+                    .lines
+                    .as_ref()
+                    .map(|(geometry, colors)| ("lines", geometry.iter().chain(colors).map(Target::bytes).sum())),
+            );
             all.push(("effects", self.effect_bytes));
         }
         if self.layer_bytes > 0 {

@@ -175,7 +175,7 @@ fn collect(parsed: &naga::Module, ty: Handle<Type>, into: &mut BTreeSet<Handle<T
 }
 
 /// How many yes-or-no questions a [`ShadeKey`] answers, beside its list of shaders.
-const NUM_SWITCHES: u32 = 21;
+const NUM_SWITCHES: u32 = 22;
 
 /// Answers, one a bit, of which at most one differs from the rest.
 fn covering_switches() -> impl Iterator<Item = u32> {
@@ -253,6 +253,7 @@ fn shade_key(shaders: u32, switches: u32, features: u32) -> ShadeKey {
         encode: on(8),
         soft_taps: if on(12) { 16 } else { 0 },
         geometry: on(15),
+        keeps_layers: on(21),
         layers: on(17).then_some((if on(16) { Finish::Add } else { Finish::Next }, on(15))),
         shadow_filter: if on(16) { ShadowFilter::Depth } else { ShadowFilter::Objects },
         orthographic: on(11),

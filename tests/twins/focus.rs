@@ -1,4 +1,5 @@
 //! Twin of `shaders/effects/focus.wgsl`, `focus_gather.wgsl` and `focus_layers.wgsl`, their known answers, and the GPU held to them.
+//! What is transparent: `focus_glass.rs`.
 
 use std::f64::consts::PI;
 
@@ -10,23 +11,23 @@ use super::gpu;
 
 /// `FocusParams`, from a style's values and the scene alone.
 #[derive(Debug, Clone, Copy)]
-struct Params {
-    orthographic: bool,
-    sharp: [f64; 2],
-    slopes_px: [f64; 2],
-    most_px: [f64; 2],
+pub struct Params {
+    pub orthographic: bool,
+    pub sharp: [f64; 2],
+    pub slopes_px: [f64; 2],
+    pub most_px: [f64; 2],
 }
 
-const TAPS: f64 = 32.0;
-const TILE: i32 = 16;
-const LEAST_RADIUS_PX: f64 = 0.5;
-const SAME_PX: f64 = 0.75;
+pub const TAPS: f64 = 32.0;
+pub const TILE: i32 = 16;
+pub const LEAST_RADIUS_PX: f64 = 0.5;
+pub const SAME_PX: f64 = 0.75;
 const FILL: f64 = 1e-3;
-const LEAST_TAPS: f64 = 8.0;
-const EVEN_PX: f64 = 4.0;
+pub const LEAST_TAPS: f64 = 8.0;
+pub const EVEN_PX: f64 = 4.0;
 
 impl Params {
-    fn measure(&self, depth: f64) -> f64 {
+    pub fn measure(&self, depth: f64) -> f64 {
         if self.orthographic { depth } else { -1.0 / depth }
     }
 
@@ -40,31 +41,31 @@ impl Params {
         [0, 1].map(|side| (self.slopes_px[side] * off[side].max(0.0)).min(self.most_px[side]))
     }
 
-    fn radius_px(&self, depth: f64) -> f64 {
+    pub fn radius_px(&self, depth: f64) -> f64 {
         let [before, behind] = self.diameters_px(depth);
         0.5 * (behind - before)
     }
 }
 
 /// What the picture shows, row by row: premultiplied light, and depths, infinite where nothing is.
-struct Seen {
-    size: [i32; 2],
-    color: Vec<DVec4>,
-    depth: Vec<f64>,
+pub struct Seen {
+    pub size: [i32; 2],
+    pub color: Vec<DVec4>,
+    pub depth: Vec<f64>,
 }
 
 impl Seen {
-    fn index(&self, [x, y]: [i32; 2]) -> usize {
+    pub fn index(&self, [x, y]: [i32; 2]) -> usize {
         (y.clamp(0, self.size[1] - 1) * self.size[0] + x.clamp(0, self.size[0] - 1)) as usize
     }
 
-    fn pixels(&self) -> impl Iterator<Item = [i32; 2]> + use<> {
+    pub fn pixels(&self) -> impl Iterator<Item = [i32; 2]> + use<> {
         let [width, height] = self.size;
         (0..height).flat_map(move |y| (0..width).map(move |x| [x, y]))
     }
 }
 
-fn noise([x, y]: [i32; 2]) -> [f64; 2] {
+pub fn noise([x, y]: [i32; 2]) -> [f64; 2] {
     let [x, y] = [x as u32 & 3, y as u32 & 3];
     let a = x ^ y;
     let order = (a & 1) << 3 | (y & 1) << 2 | (a & 2) | (y & 2) >> 1;
@@ -118,13 +119,13 @@ fn reaching(seen: &Seen, params: &Params) -> (Vec<[f64; 2]>, [i32; 2]) {
 }
 
 /// The share of a circle's light that falls on a pixel at a distance.
-fn spread_at(radius: f64, distance: f64) -> f64 {
+pub fn spread_at(radius: f64, distance: f64) -> f64 {
     let radius = radius.abs().max(LEAST_RADIUS_PX);
     (radius - distance + 0.5).clamp(0.0, 1.0) / (PI * (radius * radius + 1.0 / 12.0))
 }
 
-/// Depth of field by circles, of a picture of one sample.
-fn gathered(seen: &Seen, params: &Params) -> Vec<DVec4> {
+/// Light before the focus and behind it, gathered by circles and evened out.
+pub fn evened_fields(seen: &Seen, params: &Params) -> (Vec<[DVec4; 2]>, Vec<[DVec4; 2]>) {
     let (reaching, count) = reaching(seen, params);
     let radius_at = |index: usize| params.radius_px(seen.depth[index]);
     let reach_at = |at: [i32; 2]| {
@@ -184,11 +185,11 @@ fn gathered(seen: &Seen, params: &Params) -> Vec<DVec4> {
         }
     };
     let fields: Vec<[DVec4; 2]> = seen.pixels().map(fields).collect();
-    let composed = |own: [i32; 2]| {
+    let evened = |own: [i32; 2]| {
         let index = seen.index(own);
         let (radius, is_seen, reach) = (radius_at(index), seen.depth[index].is_finite(), reach_at(own));
         if reach < LEAST_RADIUS_PX {
-            return seen.color[index];
+            return [DVec4::ZERO, seen.color[index]];
         }
         let blurred = if radius < -SAME_PX { -radius } else { reach };
         let side = EVEN_PX.min(blurred).round_ties_even().max(1.0) as i32;
@@ -209,9 +210,15 @@ fn gathered(seen: &Seen, params: &Params) -> Vec<DVec4> {
             }
         }
         near /= f64::from(side * side);
-        near + (1.0 - near.w) * if is_sharp { seen.color[index] } else { far / fars }
+        [near, if is_sharp { seen.color[index] } else { far / fars }]
     };
-    seen.pixels().map(composed).collect()
+    let evened = seen.pixels().map(evened).collect();
+    (fields, evened)
+}
+
+/// Depth of field by circles, of a picture of one sample.
+fn gathered(seen: &Seen, params: &Params) -> Vec<DVec4> {
+    evened_fields(seen, params).1.iter().map(|[near, far]| *near + (1.0 - near.w) * *far).collect()
 }
 
 /// Depth of field in five layers; over `background` as published.
@@ -261,7 +268,7 @@ fn layered(seen: &Seen, params: &Params, background: Option<DVec4>) -> Vec<DVec4
     (0..seen.color.len()).map(composed).collect()
 }
 
-const SIZE: [u32; 2] = [96, 72];
+pub const SIZE: [u32; 2] = [96, 72];
 const ATOMS: [&str; 9] = [
     "C 0 0 2.4",
     "N 1.3 0.6 2.0",
@@ -301,13 +308,13 @@ fn staged(atoms: &[&str], camera: &str) -> Option<(Engine, Seen)> {
 }
 
 /// Depth of the middle of the scene, and its radius.
-fn depths(engine: &Engine) -> (f64, f64) {
+pub fn depths(engine: &Engine) -> (f64, f64) {
     let sphere = engine.scene().expect("a scene").bounding_sphere();
     let camera = engine.camera(SIZE).expect("a camera");
     (f64::from(-camera.view_from_world.transform_point3(sphere.center).z), f64::from(sphere.radius))
 }
 
-fn layers(engine: &Engine, orthographic: bool, layers: [f64; 4], blur_px: f64) -> Params {
+pub fn layers(engine: &Engine, orthographic: bool, layers: [f64; 4], blur_px: f64) -> Params {
     let (middle, radius) = depths(engine);
     let empty = Params { orthographic, sharp: [0.0; 2], slopes_px: [0.0; 2], most_px: [blur_px; 2] };
     let [m0, m1, m2, m3] = layers.map(|layer| empty.measure(middle + (2.0 * layer - 1.0) * radius));
@@ -315,23 +322,23 @@ fn layers(engine: &Engine, orthographic: bool, layers: [f64; 4], blur_px: f64) -
 }
 
 /// What a device draws over black: premultiplied light.
-fn drawn(engine: &mut Engine) -> Vec<DVec3> {
+pub fn drawn(engine: &mut Engine) -> Vec<DVec3> {
     let image = gpu::still(engine, SIZE, 1);
     let [r, g, b] = [0, 1, 2].map(|channel| gpu::channel(&image, channel));
     r.into_iter().zip(g).zip(b).map(|((r, g), b)| DVec3::new(r, g, b)).collect()
 }
 
 /// Mean and share of errors above 0.01.
-fn errors(device: &[DVec3], twin: &[DVec4]) -> (f64, f64) {
+pub fn errors(device: &[DVec3], twin: &[DVec4]) -> (f64, f64) {
     let errors: Vec<f64> =
         device.iter().zip(twin).map(|(device, twin)| (*device - twin.truncate()).abs().max_element()).collect();
     let count = errors.len() as f64;
     (errors.iter().sum::<f64>() / count, errors.iter().filter(|error| **error > 0.01).count() as f64 / count)
 }
 
-const CAMERAS: [(&str, bool); 2] = [(r#""fov": 45"#, false), (r#""orthographic": true"#, true)];
+pub const CAMERAS: [(&str, bool); 2] = [(r#""fov": 45"#, false), (r#""orthographic": true"#, true)];
 /// 8 pixels of 72 rows.
-const BLUR: &str = "120pt";
+pub const BLUR: &str = "120pt";
 
 #[test]
 fn the_gpu_blurs_as_the_twin_does() {

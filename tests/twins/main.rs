@@ -8,6 +8,7 @@ mod curvature;
 mod environment;
 mod failures;
 mod focus;
+mod focus_glass;
 mod furnace;
 mod gpu;
 mod impostors;

@@ -360,8 +360,8 @@ impl Bkb {
         to: &LayerTargets<'_>,
         timer: &mut Option<PassTimer>,
     ) -> Result<(), GpuError> {
-        let (Some((_, pipelines)), Some(buffers)) =
-            (self.pipelines.iter().find(|(key, _)| *key == plan.key), &self.buffers)
+        let (Some((_, pipelines)), Some(buffers), Some(picture)) =
+            (self.pipelines.iter().find(|(key, _)| *key == plan.key), &self.buffers, to.to)
         else {
             return Ok(());
         };
@@ -412,7 +412,7 @@ impl Bkb {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("bkb_blended"),
                 color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: to.to,
+                    view: picture,
                     depth_slice: None,
                     resolve_target: None,
                     ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },

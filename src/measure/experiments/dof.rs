@@ -36,8 +36,10 @@ struct Stand {
 const PLAIN: Stand =
     Stand { name: "", load: wall, layers: "[0.1, 0.45, 0.6, 1]", camera: "", has_green: true, is_transparent: false };
 
-const STANDS: [Stand; 9] = [
+const STANDS: [Stand; 11] = [
     Stand { name: "near bar before a sharp wall", load: bar, ..PLAIN },
+    Stand { name: "near glass before a sharp wall", load: near_glass, ..PLAIN },
+    Stand { name: "sharp glass before a blurred wall", load: sharp_glass, layers: "[0, 0, 0.2, 0.5]", ..PLAIN },
     Stand { name: "sharp box before a blurred wall", load: wall, layers: "[0, 0, 0.2, 0.5]", ..PLAIN },
     Stand {
         name: "slanted plane",
@@ -119,6 +121,16 @@ fn bar() -> Result<Scene, MeasureError> {
     boxes("bar", &[chequered("green", "blue"), vec![near]].concat())
 }
 
+fn near_glass() -> Result<Scene, MeasureError> {
+    let near = ("glass", [-0.45, -0.6, 1.15], [0.35, 0.5, 1.2]);
+    boxes("near glass", &[chequered("green", "blue"), vec![near]].concat())
+}
+
+fn sharp_glass() -> Result<Scene, MeasureError> {
+    let sharp = ("glass", [-0.45, -0.6, 1.15], [0.35, 0.5, 1.2]);
+    boxes("sharp glass", &[chequered("red", "blue"), vec![sharp]].concat())
+}
+
 fn wall() -> Result<Scene, MeasureError> {
     let sharp = ("green", [-0.4, -0.5, 1.1], [0.2, 0.3, 1.2]);
     boxes("wall", &[chequered("red", "blue"), vec![sharp]].concat())
@@ -166,11 +178,12 @@ fn look(stand: &Stand, kind: &Kind) -> Result<Look, MeasureError> {
         r##"{{ "camera": {{ "bgcolor": "#300060"{camera} }},
               "geometry": {{ "atom": "vdw", "scale": 0.33, "bond_radius": "0.2A" }},
               "mapping": {{ "*": "plain", "mesh[part=red]": "red", "mesh[part=green]": "green", "mesh[part=blue]": "blue",
-                "post_effects": [{listed}] }},
+                "mesh[part=glass]": "glass", "post_effects": [{listed}] }},
               "shaders": [{{ "name": "plain", "shader": "basic" }},
                 {{ "name": "red", "shader": "unlit", "properties": {{ "base_color": "#ff0060" }} }},
                 {{ "name": "green", "shader": "unlit", "properties": {{ "base_color": "#00ff00" }} }},
                 {{ "name": "blue", "shader": "unlit", "properties": {{ "base_color": "#2000a0" }} }},
+                {{ "name": "glass", "shader": "unlit", "properties": {{ "base_color": "#ff0060", "opacity": 0.4 }} }},
                 {{ "name": "focus", "shader": "dofPost", "properties": {{ "layers": {layers}, "blur": "48pt"{method} }} }}] }}"##
     );
     Look::of_text(&format!("{name} {}", kind.name), &text)
@@ -199,7 +212,7 @@ impl Experiment for Dof {
     }
 
     fn doc(&self) -> &'static str {
-        "How far depth of field is from lines of sight through a whole lens, by method, on nine scenes, and what it costs."
+        "How far depth of field is from lines of sight through a whole lens, by method, on eleven scenes, and what it costs."
     }
 
     fn chart(&self) -> ChartKind {
