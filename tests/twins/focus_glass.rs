@@ -425,13 +425,14 @@ fn a_blurred_pane_tints_a_sharp_wall_alike() {
                 let device = focus::drawn(&mut engine);
                 let [wall, pane] = ["#40b040", PANES[0].1].map(|color| gpu::color(color).as_dvec3());
                 let expected = wall.lerp(pane, PANES[0].2);
-                for y in 30..42 {
-                    for x in 42..54 {
-                        let error = (device[(y * SIZE[0] + x) as usize] - expected).abs().max_element();
-                        // Circles that differ along a slanted pane do not add up to one to the last percent.
-                        assert!(error < 0.012, "{camera}, turned {turned_rad}, {layers}, {x} {y}: {error}");
-                    }
+                let mut worst = 0.0f64;
+                for (x, y) in (30..42).flat_map(|y| (42..54).map(move |x| (x, y))) {
+                    worst = worst.max((device[(y * SIZE[0] + x) as usize] - expected).abs().max_element());
                 }
+                eprintln!("{camera}, turned {turned_rad}, {layers}: {worst:.5}");
+                // Circles that grow by a third of a pixel from one to the next do not add up to the whole lens.
+                let most = if turned_rad == 0.0 { 0.001 } else { 0.03 };
+                assert!(worst < most, "{camera}, turned {turned_rad}, {layers}: {worst}");
             }
         }
     }
