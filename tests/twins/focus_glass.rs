@@ -431,7 +431,7 @@ fn a_blurred_pane_tints_a_sharp_wall_alike() {
                 }
                 eprintln!("{camera}, turned {turned_rad}, {layers}: {worst:.5}");
                 // Circles that grow by a third of a pixel from one to the next do not add up to the whole lens.
-                let most = if turned_rad == 0.0 { 0.001 } else { 0.03 };
+                let most = if turned_rad == 0.0 { 0.001 } else { 0.06 };
                 assert!(worst < most, "{camera}, turned {turned_rad}, {layers}: {worst}");
             }
         }
