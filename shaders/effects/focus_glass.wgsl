@@ -24,6 +24,9 @@ const ALL_BINS: u32 = BINS + 1u;
 const INNER_TAPS: f32 = 9.0;
 // Radius of a disc of that area.
 const INNER_PX: f32 = 1.6925688;
+// What covers more of the lens than the first covers more than it did, up to all from the second on: circles that grow along a
+// surface do not add up to one.
+const NEARLY_ALL: vec2<f32> = vec2<f32>(0.9, 0.95);
 // Least that counts as covered.
 const LEAST_SHARE: f32 = 1e-4;
 
@@ -150,6 +153,12 @@ fn fill_of(tap: Tap) -> f32 {
     return tap.area * nearness * nearness;
 }
 
+// By how much more a part of the lens counts that covers so much of it.
+fn filled_up(covered: f32) -> f32 {
+    let more = clamp((covered - NEARLY_ALL.x) / (NEARLY_ALL.y - NEARLY_ALL.x), 0.0, 1.0);
+    return mix(covered, 1.0, more) / max(covered, LEAST_SHARE);
+}
+
 // One side of the focus, as far as `reach` pixels around.
 fn gather_side(own: vec2<i32>, is_near_side: bool, reach: f32) -> Glass {
     let circle = circle_at(own);
@@ -245,6 +254,7 @@ fn gather_side(own: vec2<i32>, is_near_side: bool, reach: f32) -> Glass {
     var through = 1.0;
     var part = 0.0;
     var covered = 0.0;
+    var light = vec4<f32>(0.0);
     var lens = 1.0;
     var solid_light = 0.0;
     var radius = vec2<f32>(0.0);
@@ -253,26 +263,30 @@ fn gather_side(own: vec2<i32>, is_near_side: bool, reach: f32) -> Glass {
         let color = colors[bin];
         if share > LEAST_SHARE {
             let first = min(share, 1.0 - covered) / share;
-            glass.color += lens * through * first * color;
+            light += lens * first * color;
             part += first * color.a;
             covered += share * first;
             if first < 1.0 {
+                glass.color += through * light;
                 through *= 1.0 - part;
                 part = (1.0 - first) * color.a;
                 covered = (1.0 - first) * share;
-                glass.color += lens * through * (1.0 - first) * color;
+                light = lens * (1.0 - first) * color;
             }
             radius += color.a * vec2<f32>(abs(weights[bin].y), 1.0);
         } else {
-            through *= 1.0 - part;
+            glass.color += through * filled_up(covered) * light;
+            through *= 1.0 - filled_up(covered) * part;
+            light = vec4<f32>(0.0);
             part = 0.0;
             covered = 0.0;
         }
         let solid = solid_scale * weights[bin].z;
-        solid_light += solid * through * (1.0 - part);
+        solid_light += solid * through * (1.0 - filled_up(covered) * part);
         lens = max(lens - solid, 0.0);
     }
-    glass.open = through * (1.0 - part);
+    glass.color += through * filled_up(covered) * light;
+    glass.open = through * (1.0 - filled_up(covered) * part);
     if is_near_side {
         glass.before_solid = select(glass.open, solid_light / max(near_solid, 1e-9), solid_sum > LEAST_SHARE && near_solid > LEAST_SHARE);
     } else {

@@ -75,6 +75,7 @@ pub fn survey() -> &'static Survey {
         }
         survey.read("resolve", &resolve_module());
         survey.read("room of layers", &layers::room_module());
+        survey.read("sorted layers", &layers::sort_module());
         survey.read("nearest layers", &layers::nearest_module());
         for key in effect_keys() {
             survey.read(&format!("effect, {key:?}"), &effect_module(&key));
