@@ -505,12 +505,13 @@ const EXTENDING: &str = r##"{ "extends": "education.json", "camera": { "fov": 20
                 { "name": "glass", "shader": "curvature", "properties": { "gain": 3, "opacity": 0.5 } }] }"##;
 
 /// Styles of entries that may be there once, twice or not at all, so that many changes leave them right.
-const LIT: [&str; 3] = [
+const LIT: [&str; 4] = [
     r#"{ "lights": [{}, {}, {}, {}, {}, {}] }"#,
     r#"{ "camera": { "exposure": 0.5 }, "lights": [{}, { "intensity": 0.5 }, {}, { "type": "ambient" }, {}, { "color": "white" }, {},
         { "type": "ambient", "intensity": 0.4 }, {}, { "shadow": "soft" }, {}, { "position": [1, 2, 3] }] }"#,
     r#"{ "geometry": { "scale": 0.4 }, "lights": [{ "type": "point" }, {}, { "movable": true }, {}, { "range": 4 }, {}, { "space": "scene" }, {},
         { "softness": 5 }, {}, { "strength": 0.5, "shadow": "hard" }, {}, { "type": "ambient" }] }"#,
+    r#"{ "lights": [{ "color": "white" }, {}, { "intensity": 2 }, {}, { "type": "ambient" }, {}, { "strength": 0.2 }, {}] }"#,
 ];
 
 /// A small style that one number makes meaningless: the camera then stands where it looks.
