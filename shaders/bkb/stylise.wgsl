@@ -6,13 +6,6 @@
 @group(2) @binding(2) var<storage, read_write> bkb_b: array<u32>;
 @group(2) @binding(3) var<storage, read_write> bkb_d: array<u32>;
 
-// k1 + k2 of the surface whose normals change by `dx` for a step of 1 to the right in the plane of rays and by `dy` upwards: the
-// trace of the change of the normal along the surface, in units of the scene (ours).
-fn curvature_of(dx: vec3<f32>, dy: vec3<f32>, plane: vec2<f32>, t: f32) -> f32 {
-    if ORTHOGRAPHIC { return -(dx.x + dy.y); }
-    return -(dx.x + dy.y + plane.x * dx.z + plane.y * dy.z) / t;
-}
-
 // Depth along the view.
 fn depth_of(fragment: BkbFragment) -> f32 {
     return bkb.near + fragment.depth * DEPTH_STEPS / bkb.depth_scale;

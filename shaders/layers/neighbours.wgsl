@@ -45,13 +45,6 @@ fn beside(s: Surface, at: vec2<i32>, t: f32, reach: f32) -> Beside {
     return Beside(true, surface_at(ray_at(view, vec2<f32>(at) + 0.5), best).normal_view);
 }
 
-// Sum of the principal curvatures of the surface whose normals change by `dx` for a step of 1 to the right in the plane of rays and by
-// `dy` upwards: the trace of the change of the normal along the surface (ours).
-fn trace_of_change(dx: vec3<f32>, dy: vec3<f32>, plane: vec2<f32>, t: f32) -> f32 {
-    if ORTHOGRAPHIC { return -(dx.x + dy.y); }
-    return -(dx.x + dy.y + plane.x * dx.z + plane.y * dy.z) / t;
-}
-
 // As `kappa` of the surface, from the pixels around it. Where one of two is missing the difference is one-sided; where both are, nothing
 // is known but the curvature of the surface itself.
 fn kappa_of_screen(s: Surface, position_px: vec2<f32>) -> f32 {
@@ -74,5 +67,5 @@ fn kappa_of_screen(s: Surface, position_px: vec2<f32>) -> f32 {
     let dx = (right.normal - left.normal) * scale.x;
     let dy = (below.normal - above.normal) * scale.y;
     let plane = (position_px + view.tile_origin_px) * view.plane_from_px.xy + view.plane_from_px.zw;
-    return trace_of_change(dx, dy, plane, t);
+    return curvature_of(dx, dy, plane, t);
 }

@@ -29,6 +29,8 @@ const SLACK: f64 = 1.25;
 /// Pixels of one invocation that gives room, and invocations of a group: see `shaders/layers/room.wgsl`.
 const ROOM_RUN: u32 = 32;
 const ROOM_GROUP: u32 = 64;
+/// Rows and columns around each pixel that curvature from neighbouring pixels asks for.
+const HALO: u32 = 1;
 /// Side of the square of pixels whose lists a group sorts: see `shaders/layers/sort.wgsl`.
 const SORT_SIDE: u32 = 8;
 
@@ -98,7 +100,7 @@ struct Band {
     held: std::ops::Range<u32>,
     raster: wgpu::BindGroup,
     room: wgpu::BindGroup,
-    sort: wgpu::BindGroup,
+    sort: Option<wgpu::BindGroup>,
     blend: wgpu::BindGroup,
 }
 
@@ -115,6 +117,8 @@ struct BandSlot {
 #[derive(Default)]
 pub struct Layers {
     size: [u32; 2],
+    /// Most bytes of a buffer that they were made for.
+    limit: u64,
     counts: Option<wgpu::Buffer>,
     starts: Option<wgpu::Buffer>,
     pool: Option<wgpu::Buffer>,
@@ -239,7 +243,7 @@ impl LayersPlan {
         };
         let raster = |drawn| VisibilityKey { drawn, hulls: false, ..seen };
         LayersPlan {
-            halo: u32::from(shade.asks_neighbours()),
+            halo: if shade.asks_neighbours() { HALO } else { 0 },
             shade,
             count: raster(Drawn::CountedLayers),
             write: raster(Drawn::WrittenLayers),
@@ -311,10 +315,10 @@ impl Layers {
             self.pool = None;
         }
         let pixels = u64::from(size[0]) * u64::from(size[1]);
-        if self.size != size || self.halo != halo || self.num_bands == 0 {
+        if (self.size, self.limit, self.halo) != (size, limit, halo) || self.num_bands == 0 {
             self.num_bands = bands_of_counts(size, limit, halo);
             self.is_too_much = false;
-            (self.size, self.halo) = (size, halo);
+            (self.size, self.limit, self.halo) = (size, limit, halo);
             self.capacity = self.capacity.max((pixels / u64::from(self.num_bands)) * FIRST_LAYERS).min(most);
             self.pool = None;
             (self.counts, self.starts) = (None, None);
@@ -395,7 +399,7 @@ impl Layers {
             bands.push(Band {
                 rows,
                 held,
-                sort: slot.sort.get(gpu, "sorted layers", room_layout, stored(vec![pool()])),
+                sort: (self.halo > 0).then(|| slot.sort.get(gpu, "sorted layers", room_layout, stored(vec![pool()]))),
                 raster: slot.raster.get(
                     gpu,
                     "layers",
@@ -436,7 +440,9 @@ impl Layers {
 
     /// Whether the lists of a picture of this size can be kept at once, as far as is known.
     pub fn can_keep(&self, gpu: &Gpu, size: [u32; 2], memory_bytes: u64) -> bool {
-        bands_of_counts(size, most_bytes(gpu, memory_bytes), 0) == 1 && !(self.size == size && self.is_too_much)
+        let limit = most_bytes(gpu, memory_bytes);
+        let is_known = (self.size, self.limit) == (size, limit);
+        bands_of_counts(size, limit, HALO) == 1 && !(is_known && (self.is_too_much || self.num_bands > 1))
     }
 
     /// The lists of the whole picture, in the order of [`lists_layout`]; none before they are made.
@@ -502,13 +508,13 @@ impl Layers {
             self.num_totals += 1;
             let written = raster("layers_written", plan.write);
             visibility.draw_layers(encoder, scene, objects, &written, &band.raster, held.clone(), timer);
-            if let Some(sort) = self.sort.as_ref().filter(|_| plan.halo > 0) {
+            if let Some((sort, group)) = self.sort.as_ref().zip(band.sort.as_ref()) {
                 let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                     label: Some("sorted layers"),
                     timestamp_writes: timer.as_mut().and_then(|timer| timer.compute_pass("layers_sorted")),
                 });
                 pass.set_pipeline(sort);
-                pass.set_bind_group(0, &band.sort, &[]);
+                pass.set_bind_group(0, group, &[]);
                 pass.dispatch_workgroups(
                     self.size[0].div_ceil(SORT_SIDE),
                     (held.end - held.start).div_ceil(SORT_SIDE),

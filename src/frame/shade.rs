@@ -492,6 +492,9 @@ pub fn shade_module(key: &ShadeKey) -> Module {
         module.add(wgsl!("layers/lists.wgsl"));
         module.add(wgsl!("lib/sort_layers.wgsl"));
         let asks = key.asks_neighbours();
+        if asks {
+            module.add(wgsl!("lib/trace.wgsl"));
+        }
         module.add(if asks { wgsl!("layers/neighbours.wgsl") } else { wgsl!("layers/neighbours_none.wgsl") });
         module.add(if key.keeps_layers { wgsl!("layers/keep.wgsl") } else { wgsl!("layers/blend.wgsl") });
     } else if key.geometry {

@@ -16,6 +16,7 @@ pub mod metrics;
 mod overview;
 pub mod page;
 pub mod run;
+pub mod sheet;
 mod stage;
 
 pub use experiment::{Case, ChartKind, Entry, Experiment, MeasureError, Setup};

@@ -1,7 +1,6 @@
 //! Twin of `shaders/objects/curvature.wgsl` and `shaders/lib/transfer.wgsl`, and the device held to it, to formulas of surfaces,
 //! and to the reference renderer.
 
-use std::fmt::Write as _;
 use std::ops::ControlFlow;
 
 use glam::{DVec2, DVec3};
@@ -10,6 +9,7 @@ use restyle::config::{self, Catalog, Source};
 use restyle::engine::exact::Exact;
 use restyle::engine::{self, Engine, Request};
 use restyle::measure::metrics::{Options, compare};
+use restyle::measure::sheet::sheet;
 use restyle::scene::Scene;
 use restyle::shading::curvature::{CurvatureMaterial, texels};
 use restyle::shipped::{LOOKS, MESHES, MOLECULES, find};
@@ -238,29 +238,10 @@ fn gain_of(curvature: f64) -> f64 {
     0.9f64.atanh() / curvature
 }
 
-/// Rows of a surface as OBJ with its exact normals; `at` gives place and normal for two shares.
-fn sheet(columns: usize, rows: usize, at: impl Fn(f64, f64) -> (DVec3, DVec3)) -> String {
-    let mut text = String::new();
-    for row in 0..=rows {
-        for column in 0..=columns {
-            let (p, n) = at(column as f64 / columns as f64, row as f64 / rows as f64);
-            let _ = writeln!(text, "v {} {} {}\nvn {} {} {}", p.x, p.y, p.z, n.x, n.y, n.z);
-        }
-    }
-    let index = |column: usize, row: usize| row * (columns + 1) + column + 1;
-    for row in 0..rows {
-        for column in 0..columns {
-            let [a, b, c, d] = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(x, y)| index(column + x, row + y));
-            let _ = writeln!(text, "f {a}//{a} {b}//{b} {c}//{c} {d}//{d}");
-        }
-    }
-    text
-}
-
 const TAU: f64 = std::f64::consts::TAU;
 
 fn torus() -> String {
-    sheet(360, 180, |u, v| {
+    sheet([360, 180], |u, v| {
         let (around, tube) = (u * TAU, v * TAU);
         let out = DVec3::new(around.cos(), around.sin(), 0.0);
         let normal = out * tube.cos() + DVec3::Z * tube.sin();
@@ -323,7 +304,7 @@ fn curvature_is_that_of_the_surface() {
         let (error, count) = error_of(&mut engine, [256, 256], torus_kappa);
         assert!(count > 5000 && error < 0.002, "{camera}: {error} over {count} pixels");
         // With normals that look inwards, of a surface that is seen from outside.
-        let inside = sheet(240, 120, |u, v| {
+        let inside = sheet([240, 120], |u, v| {
             let (around, tube) = (u * TAU, -v * TAU);
             let out = DVec3::new(around.cos(), around.sin(), 0.0);
             let normal = out * tube.cos() + DVec3::Z * tube.sin();
@@ -389,9 +370,14 @@ fn neighbours_are_found_across_bands() {
     };
     let pixels = |size: [u32; 2], memory_mb: u32| {
         let mut engine = Engine::new(gpu.clone(), shipped("gearbox"), style(memory_mb));
-        engine.still(&Request::new(size, 1)).expect("a still").pixels
+        let pixels = engine.still(&Request::new(size, 1)).expect("a still").pixels;
+        let layers = engine.target_bytes().iter().find(|(name, _)| *name == "layers").map(|(_, bytes)| *bytes);
+        (pixels, layers.expect("layers"))
     };
-    assert_eq!(pixels([1000, 1000], 512), pixels([1000, 1000], 16));
+    let (whole, bytes) = pixels([1000, 1000], 512);
+    let (banded, band_bytes) = pixels([1000, 1000], 16);
+    assert!(bytes > 32 << 20 && band_bytes < 28 << 20, "{bytes} and {band_bytes}");
+    assert_eq!(whole, banded);
 }
 
 #[test]

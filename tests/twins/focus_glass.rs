@@ -519,3 +519,26 @@ fn lists_that_are_too_long_are_blended_first() {
         assert_eq!(engine.layers_are_merged(&request).expect("a plan"), is_merged, "{memory_mb} MB");
     }
 }
+
+#[test]
+fn glass_does_not_depend_on_what_was_drawn_before() {
+    let all: Vec<Square> =
+        (0..30).map(|index| square("pane0", [0.0, 0.0, f64::from(index) / 30.0], [1.0, 1.0])).collect();
+    let request = Request::new([400, 300], 1);
+    let look = |memory_mb, listed| {
+        let mut style = style(r#""zoom": 2"#, [0.02; 3], 1.0, listed, r#""layers": [0, 0.6, 0.7, 1], "blur": "90pt""#);
+        style.transparency.memory_mb = memory_mb;
+        style
+    };
+    let Some(gpu) = gpu::device() else { return };
+    let mut used = Engine::new(gpu.clone(), squares(&all), look(16, ""));
+    // In bands, merged, apart, and in bands once more.
+    for (memory_mb, listed) in [(16, ""), (16, r#""focus""#), (512, r#""focus""#), (16, "")] {
+        used.set_style(look(memory_mb, listed));
+        let mut fresh = Engine::new(gpu.clone(), squares(&all), look(memory_mb, listed));
+        let [one, other] = [&mut used, &mut fresh].map(|engine| engine.still(&request).expect("a still").pixels);
+        assert!(one == other, "{memory_mb} MB, {listed}");
+        let merged = [&mut used, &mut fresh].map(|engine| engine.layers_are_merged(&request).expect("a plan"));
+        assert_eq!(merged[0], merged[1], "{memory_mb} MB, {listed}");
+    }
+}

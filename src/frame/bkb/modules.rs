@@ -142,6 +142,7 @@ pub fn blend_module(key: &BkbKey) -> Module {
     } else {
         module.add(wgsl!("bkb/query.wgsl"));
         module.add(wgsl!("bkb/neighbours.wgsl"));
+        module.add(wgsl!("lib/trace.wgsl"));
         module.add(wgsl!("bkb/stylise.wgsl"));
         module.add(wgsl!("bkb/order_bucketed.wgsl"));
         let (declared, kept) = match key.keeps_kappa {

@@ -1,6 +1,5 @@
 //! `curvature`: how far curvature is from that of shapes whose formulas are known, by where it comes from.
 
-use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::rc::Rc;
 
@@ -13,6 +12,7 @@ use crate::measure::experiment::{
 };
 use crate::measure::page::short;
 use crate::measure::run::Row;
+use crate::measure::sheet::sheet;
 use crate::measure::stage::{Look, Stage, device, scene};
 use crate::scene::{Camera, Image, Pixels, Scene, linear_from_srgb, srgb_from_linear};
 
@@ -126,25 +126,6 @@ const AXES: DVec3 = DVec3::new(1.0, 0.7, 0.5);
 fn around(turns: f64) -> DVec3 {
     let (sin, cos) = (turns * std::f64::consts::TAU).sin_cos();
     DVec3::new(cos, sin, 0.0)
-}
-
-/// A surface as OBJ with its exact normals; `at` gives place and normal for two shares.
-fn sheet([columns, rows]: [usize; 2], at: impl Fn(f64, f64) -> (DVec3, DVec3)) -> String {
-    let mut text = String::new();
-    for row in 0..=rows {
-        for column in 0..=columns {
-            let (p, n) = at(column as f64 / columns as f64, row as f64 / rows as f64);
-            let _ = writeln!(text, "v {} {} {}\nvn {} {} {}", p.x, p.y, p.z, n.x, n.y, n.z);
-        }
-    }
-    let index = |column: usize, row: usize| row * (columns + 1) + column + 1;
-    for row in 0..rows {
-        for column in 0..columns {
-            let [a, b, c, d] = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(x, y)| index(column + x, row + y));
-            let _ = writeln!(text, "f {a}//{a} {b}//{b} {c}//{c} {d}//{d}");
-        }
-    }
-    text
 }
 
 /// A point that a pixel sees.
