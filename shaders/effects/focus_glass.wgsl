@@ -12,8 +12,8 @@
 // Layers whose surfaces keep their depths are those of [Lee2009, throughout]; that they are gathered, and how they are ordered, is ours.
 
 @group(2) @binding(0) var<uniform> layers: LayerBand;
-@group(2) @binding(1) var<storage, read> layer_counts: array<u32>;
-@group(2) @binding(2) var<storage, read> layer_starts: array<u32>;
+@group(2) @binding(1) var<storage, read> layer_ends: array<u32>;
+@group(2) @binding(2) var<storage, read> layer_runs: array<u32>;
 @group(2) @binding(3) var<storage, read> layer_pool: array<vec2<u32>>;
 
 // Bins of a side.
@@ -30,18 +30,8 @@ const NEARLY_ALL: vec2<f32> = vec2<f32>(0.9, 0.95);
 // Least that counts as covered.
 const LEAST_SHARE: f32 = 1e-4;
 
-// Where the list of a pixel lies in the pool.
-struct List {
-    start: u32,
-    count: u32,
-}
-
-fn list_at(at: vec2<i32>) -> List {
-    let pixel = u32(at.y) * layers.width + u32(at.x);
-    let list = List(layer_starts[pixel], layer_counts[pixel]);
-    // The pool is too small: it grows, and all is drawn again.
-    if !fits(layers, list.start, list.count) { return List(0u, 0u); }
-    return list;
+fn list_at(at: vec2<i32>) -> LayerList {
+    return list_of(u32(at.y) * layers.width + u32(at.x));
 }
 
 // A transparent surface: its light, how much it covers, and the radius of its circle, below 0 before what is sharp.

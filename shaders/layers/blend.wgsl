@@ -1,6 +1,5 @@
-// The layers of a pixel over what is opaque there: its list is sorted from near to far, equal depths by their ids, and each fragment is
-// shaded from its id and blended until next to no light comes through. Nothing but the surfaces that count is ever shaded.
-// SORTED: lists are in order already, since fragments ask those of other pixels.
+// The layers of a pixel over what is opaque there: each fragment of its list, which is sorted from near to far, is shaded from its id
+// and blended until next to no light comes through. Nothing but the surfaces that count is ever shaded.
 
 @group(2) @binding(4) var color: texture_2d<f32>;
 @group(2) @binding(5) var geometry: texture_2d<u32>;
@@ -18,21 +17,16 @@ struct Blended {
 fn blended(position_px: vec2<f32>) -> Blended {
     let at = vec2<i32>(position_px);
     let behind = textureLoad(color, at, 0);
-    let pixel = u32(at.y) * layers.width + u32(at.x) - layers.first_pixel;
-    let count = layer_counts[pixel];
     var result = Blended(behind, textureLoad(geometry, at, 0));
-    if count == 0u { return result; }
-    let start = layer_starts[pixel];
-    // The pool is too small: it grows, and all is drawn again.
-    if !fits(layers, start, count) { return result; }
-    if !SORTED { sort_layers(start, count); }
+    let list = list_of(u32(at.y) * layers.width + u32(at.x) - layers.first_pixel);
+    if list.count == 0u { return result; }
     let ray = ray_at(view, position_px);
     var light = vec3<f32>(0.0);
     var open = 1.0;
-    for (var index = 0u; index < count; index++) {
-        let id = layer_pool[start + index].y;
+    for (var index = 0u; index < list.count; index++) {
+        let id = layer_pool[list.start + index].y;
         var s = surface_at(ray, id);
-        if SORTED { s.kappa_of_screen = kappa_of_screen(s, position_px); }
+        if ASKS_NEIGHBOURS { s.kappa_of_screen = kappa_of_screen(s, position_px); }
         let material = material_of(id);
         let drawn = shade_layer(s, material);
         light += open * drawn.a * drawn.rgb;

@@ -3,25 +3,20 @@
 
 @group(2) @binding(5) var geometry: texture_2d<u32>;
 
-// Sorts and shades them; what is left is the nearest surface, for effects that come between.
+// Shades them; what is left is the nearest surface, for effects that come between.
 fn kept(position_px: vec2<f32>) -> vec4<u32> {
     let at = vec2<i32>(position_px);
-    let pixel = u32(at.y) * layers.width + u32(at.x) - layers.first_pixel;
-    let count = layer_counts[pixel];
     var nearest = textureLoad(geometry, at, 0);
-    if count == 0u { return nearest; }
-    let start = layer_starts[pixel];
-    // The pool is too small: it grows, and all is drawn again.
-    if !fits(layers, start, count) { return nearest; }
-    if !SORTED { sort_layers(start, count); }
+    let list = list_of(u32(at.y) * layers.width + u32(at.x) - layers.first_pixel);
+    if list.count == 0u { return nearest; }
     let ray = ray_at(view, position_px);
-    for (var index = 0u; index < count; index++) {
-        let id = layer_pool[start + index].y;
+    for (var index = 0u; index < list.count; index++) {
+        let id = layer_pool[list.start + index].y;
         var s = surface_at(ray, id);
-        if SORTED { s.kappa_of_screen = kappa_of_screen(s, position_px); }
+        if ASKS_NEIGHBOURS { s.kappa_of_screen = kappa_of_screen(s, position_px); }
         let drawn = shade_layer(s, material_of(id));
         let light = vec2<u32>(pack2x16float(drawn.rg), pack2x16float(drawn.ba));
-        layer_pool[layers.capacity + start + index] = light;
+        layer_pool[layers.capacity + list.start + index] = light;
         if index == 0u {
             let depth = -s.position_view.z;
             let bend_px = s.bend * pixel_world(view, depth);

@@ -20,20 +20,18 @@ fn beside(s: Surface, at: vec2<i32>, t: f32, reach: f32) -> Beside {
     let none = Beside(false, s.normal_view);
     let pixel = at.y * i32(layers.width) + at.x - i32(layers.first_pixel);
     if at.x < 0 || at.x >= i32(layers.width) || pixel < 0 || pixel >= i32(layers.num_pixels) { return none; }
-    let start = layer_starts[pixel];
-    let count = layer_counts[pixel];
-    if !fits(layers, start, count) { return none; }
+    let list = list_of(u32(pixel));
     // The first that is not before all that counts.
     var low = 0u;
-    var high = count;
+    var high = list.count;
     while low < high {
         let middle = (low + high) / 2u;
-        if bitcast<f32>(layer_pool[start + middle].x) < t - reach { low = middle + 1u; } else { high = middle; }
+        if bitcast<f32>(layer_pool[list.start + middle].x) < t - reach { low = middle + 1u; } else { high = middle; }
     }
     var best = 0u;
     var nearest = reach;
-    for (var index = low; index < count; index++) {
-        let fragment = layer_pool[start + index];
+    for (var index = low; index < list.count; index++) {
+        let fragment = layer_pool[list.start + index];
         let apart = bitcast<f32>(fragment.x) - t;
         if apart > nearest { break; }
         if abs(apart) <= nearest && object_of(fragment.y) == s.object {

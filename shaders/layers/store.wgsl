@@ -5,18 +5,13 @@
 // Counting and writing are one fragment shader each way: WRITES says which.
 
 @group(1) @binding(0) var<uniform> layers: LayerBand;
-@group(1) @binding(1) var<storage, read_write> layer_counts: array<atomic<u32>>;
-@group(1) @binding(2) var<storage, read_write> layer_starts: array<u32>;
+@group(1) @binding(1) var<storage, read_write> layer_ends: array<atomic<u32>>;
 @group(1) @binding(3) var<storage, read_write> layer_pool: array<vec2<u32>>;
 @group(1) @binding(4) var opaque_depth: texture_depth_2d;
 
 fn add_layer(position_px: vec2<f32>, id: u32, t: f32) {
     let at = vec2<i32>(position_px);
     if depth_value(view, t) <= textureLoad(opaque_depth, at, 0) { return; }
-    let pixel = u32(at.y) * layers.width + u32(at.x) - layers.first_pixel;
-    let index = atomicAdd(&layer_counts[pixel], 1u);
-    if WRITES {
-        let start = layer_starts[pixel];
-        if fits(layers, start, index + 1u) { layer_pool[start + index] = vec2<u32>(bitcast<u32>(t), id); }
-    }
+    let place = atomicAdd(&layer_ends[u32(at.y) * layers.width + u32(at.x) - layers.first_pixel], 1u);
+    if WRITES && place < layers.capacity { layer_pool[place] = vec2<u32>(bitcast<u32>(t), id); }
 }

@@ -207,6 +207,7 @@ impl PostEffect for Focus {
         const GLASS: &[Wgsl] = &[
             wgsl!("lib/noise.wgsl"),
             wgsl!("lib/layers.wgsl"),
+            wgsl!("lib/layer_lists.wgsl"),
             wgsl!("effects/focus_gather.wgsl"),
             wgsl!("effects/focus_glass.wgsl"),
             wgsl!("effects/focus_no_lines.wgsl"),
@@ -215,6 +216,7 @@ impl PostEffect for Focus {
         const LINED_GLASS: &[Wgsl] = &[
             wgsl!("lib/noise.wgsl"),
             wgsl!("lib/layers.wgsl"),
+            wgsl!("lib/layer_lists.wgsl"),
             wgsl!("effects/focus_gather.wgsl"),
             wgsl!("effects/focus_glass.wgsl"),
             wgsl!("effects/focus_lines.wgsl"),

@@ -1,9 +1,10 @@
 //! Layers: what is transparent, all of its surfaces at each pixel, blended from near to far over what is opaque.
 //!
-//! Every fragment is kept, once, in a pool of exactly as many: fragments are counted for each pixel, given room, written down with
+//! Every fragment is kept, once, in a pool of about as many: fragments are counted for each pixel, given room, written down with
 //! 8 bytes each (depth and id), sorted, and shaded from their ids only as far as light comes through (ours, of the family that
-//! [Maule2014, throughout] surveys). Nothing is dropped: where the pool is too small, the frame tells by how much, the pool
-//! grows and the frame is drawn again; where it would outgrow a binding, the picture is drawn in bands.
+//! [Maule2014, throughout] surveys). Of each list its end alone is kept, and of each run of lists its start. Nothing is dropped: where
+//! the pool is too small, the frame tells by how much, the pool grows and the frame is drawn again; where it would outgrow a
+//! binding, the picture is drawn in bands.
 //!
 //! Depth of field reads the lists themselves, with the light of each fragment beside it, instead of a blended picture. That
 //! takes all of them at once: where they would not fit, what is blended is blurred by the depth of its nearest surface.
@@ -13,26 +14,29 @@ use super::fullscreen;
 use super::objects::ObjectBuffers;
 use super::post::Finish;
 use super::shade::Shade;
+use super::sort::{self, sort_module};
 use super::visibility::{Drawn, ID_FORMAT, SceneBindings, Visibility, VisibilityKey, VisibilityPass};
 use crate::gpu::{Bound, Gpu, GpuError, KeptBindGroup, KeptBuffer, Module, PassTimer, read_words};
 use crate::{gpu_struct, wgsl};
 
-/// Bytes of what a band tells: its fragments, and whether they are more than that word counts.
+/// Bytes of what a band tells: its fragments, and whether they are more than that word counts. Classes of runs follow, with four words
+/// each, the first of which are dispatched.
 const TOTAL_BYTES: u64 = 8;
+const CLASS_BYTES: u64 = 16;
+const TALLY_BYTES: u64 = CLASS_BYTES * (1 + sort::CLASSES as u64);
 /// Bytes of a fragment, and of its light where that is kept.
 const FRAGMENT_BYTES: u64 = 8;
 const LIGHT_BYTES: u64 = 8;
 /// Fragments for each pixel that a pool holds before more are known to be there.
 const FIRST_LAYERS: u64 = 4;
-/// How much more than what was needed a pool holds, so that a turned scene does not outgrow it at once.
-const SLACK: f64 = 1.25;
-/// Pixels of one invocation that gives room, and invocations of a group: see `shaders/layers/room.wgsl`.
-const ROOM_RUN: u32 = 32;
+/// How much more than what was needed a pool holds: next to nothing for a still, which outgrows it once; more for a scene that is turned
+/// and does so again.
+const SLACKS: [f64; 2] = [1.03, 1.25];
+/// Pixels of a run, see `shaders/lib/layers.wgsl`, and runs that a group gives room, see `shaders/layers/room.wgsl`.
+const RUN: u32 = 32;
 const ROOM_GROUP: u32 = 64;
 /// Rows and columns around each pixel that curvature from neighbouring pixels asks for.
 const HALO: u32 = 1;
-/// Side of the square of pixels whose lists a group sorts: see `shaders/layers/sort.wgsl`.
-const SORT_SIDE: u32 = 8;
 
 gpu_struct! {
     "lib/layers.wgsl",
@@ -100,7 +104,7 @@ struct Band {
     held: std::ops::Range<u32>,
     raster: wgpu::BindGroup,
     room: wgpu::BindGroup,
-    sort: Option<wgpu::BindGroup>,
+    sort: wgpu::BindGroup,
     blend: wgpu::BindGroup,
 }
 
@@ -119,13 +123,18 @@ pub struct Layers {
     size: [u32; 2],
     /// Most bytes of a buffer that they were made for.
     limit: u64,
-    counts: Option<wgpu::Buffer>,
-    starts: Option<wgpu::Buffer>,
+    /// The end of each list, and the start of each run of them.
+    ends: Option<wgpu::Buffer>,
+    runs: Option<wgpu::Buffer>,
     pool: Option<wgpu::Buffer>,
-    total: Option<wgpu::Buffer>,
+    /// What a band tells: see `shaders/layers/room.wgsl`.
+    tally: Option<wgpu::Buffer>,
+    classes: Option<wgpu::Buffer>,
     readable: Option<(wgpu::Buffer, u64)>,
     /// Fragments that the pool holds.
     capacity: u64,
+    /// Whether it has grown for pictures of this size.
+    has_grown: bool,
     /// Whether it holds their light as well.
     keeps_light: bool,
     /// Whether the lists of a picture of this size are too many to be kept at once.
@@ -133,14 +142,38 @@ pub struct Layers {
     num_bands: u32,
     /// Rows that a band holds beyond each of its ends.
     halo: u32,
-    sort: Option<wgpu::ComputePipeline>,
+    /// For each class of runs.
+    sort: Vec<wgpu::ComputePipeline>,
     room: Option<(wgpu::BindGroupLayout, wgpu::ComputePipeline)>,
     nearest: Option<wgpu::RenderPipeline>,
     slots: Vec<BandSlot>,
     lists_params: Option<KeptBuffer>,
     num_totals: u64,
-    /// The counts of all bands, where AOVs ask for them.
-    all_counts: Option<wgpu::Buffer>,
+    /// Ends and runs of all bands, where AOVs ask for them.
+    all_lists: Option<(wgpu::Buffer, Vec<BandLists>)>,
+}
+
+/// Where the lists of a band lie among those of all.
+struct BandLists {
+    rows: std::ops::Range<u32>,
+    held: std::ops::Range<u32>,
+}
+
+impl BandLists {
+    /// Words of its ends, and of its runs behind them.
+    fn words(&self, width: u32) -> [usize; 2] {
+        let pixels = (self.held.end - self.held.start) * width;
+        [pixels, pixels.div_ceil(RUN)].map(|words| words as usize)
+    }
+}
+
+/// Start and end of each list.
+fn bounds_of<'a>(ends: &'a [u32], runs: &'a [u32]) -> impl Iterator<Item = [u32; 2]> + 'a {
+    let of_run = |(run, start): (&'a [u32], &'a u32)| {
+        let starts = std::iter::once(start).chain(run);
+        starts.zip(run).map(|(start, end)| [*start, *end])
+    };
+    ends.chunks(RUN as usize).zip(runs).flat_map(of_run)
 }
 
 /// A buffer that shaders read and write.
@@ -161,7 +194,7 @@ fn plain(binding: u32, visibility: wgpu::ShaderStages, ty: wgpu::BindingType) ->
     wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None }
 }
 
-/// A layout of a band, its counts, starts and pool, and then textures.
+/// A layout of a band, its ends, runs and pool, and then textures.
 fn band_layout(gpu: &Gpu, label: &'static str, textures: &[wgpu::TextureSampleType]) -> wgpu::BindGroupLayout {
     let stage = wgpu::ShaderStages::FRAGMENT;
     let mut entries =
@@ -174,9 +207,10 @@ fn fragment_bytes(keeps_light: bool) -> u64 {
     FRAGMENT_BYTES + if keeps_light { LIGHT_BYTES } else { 0 }
 }
 
-/// Bands of which each has as many counts as fit a binding.
-fn bands_of_counts(size: [u32; 2], limit: u64, halo: u32) -> u32 {
+/// Bands of which each has as many lists as fit a binding.
+fn bands_of_lists(size: [u32; 2], limit: u64, halo: u32) -> u32 {
     let [row, halo] = [1, 2 * halo].map(|rows| u64::from(rows) * u64::from(size[0]) * 4);
+    let limit = limit.min(sort::MOST_PIXELS * 4);
     (u64::from(size[1]) * row).div_ceil(limit.saturating_sub(halo).max(1)).max(1) as u32
 }
 
@@ -285,20 +319,24 @@ impl Layers {
                     storage(1, stage),
                     storage(2, stage),
                     storage(3, stage),
+                    storage(4, stage),
                 ],
             });
             let pipeline = gpu.compute_pipeline("room of layers", &room_module(), "make_room", &[Some(&layout)])?;
             self.room = Some((layout, pipeline));
         }
-        if let Some((layout, _)) = self.room.as_ref().filter(|_| plan.halo > 0 && self.sort.is_none()) {
-            self.sort = Some(gpu.compute_pipeline("sorted layers", &sort_module(), "sort_lists", &[Some(layout)])?);
+        if let Some((layout, _)) = self.room.as_ref().filter(|_| self.sort.is_empty()) {
+            let build =
+                |class| gpu.compute_pipeline("sorted layers", &sort_module(class), "sort_runs", &[Some(layout)]);
+            self.sort = (0..sort::CLASSES).map(build).collect::<Result<_, _>>()?;
         }
         Ok(())
     }
 
     /// Forgets the pipeline, so that it is built anew.
     pub fn forget_pipelines(&mut self) {
-        (self.room, self.sort, self.nearest) = (None, None, None);
+        (self.room, self.nearest) = (None, None);
+        self.sort.clear();
     }
 
     /// Makes the buffers fit a picture, with at most `limit` bytes for each.
@@ -316,12 +354,13 @@ impl Layers {
         }
         let pixels = u64::from(size[0]) * u64::from(size[1]);
         if (self.size, self.limit, self.halo) != (size, limit, halo) || self.num_bands == 0 {
-            self.num_bands = bands_of_counts(size, limit, halo);
+            self.num_bands = bands_of_lists(size, limit, halo);
             self.is_too_much = false;
             (self.size, self.limit, self.halo) = (size, limit, halo);
             self.capacity = self.capacity.max((pixels / u64::from(self.num_bands)) * FIRST_LAYERS).min(most);
+            self.has_grown = false;
             self.pool = None;
-            (self.counts, self.starts) = (None, None);
+            (self.ends, self.runs) = (None, None);
         }
         if self.num_bands > size[1] {
             let bytes = self.capacity * each * u64::from(self.num_bands) / u64::from(size[1].max(1));
@@ -333,7 +372,7 @@ impl Layers {
             });
         }
         let rows = (size[1].div_ceil(self.num_bands) + 2 * halo).min(size[1]);
-        let band_bytes = u64::from(rows) * u64::from(size[0]) * 4;
+        let pixels = u64::from(rows) * u64::from(size[0]);
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
         let fit = |buffer: &mut Option<wgpu::Buffer>, label, bytes: u64| {
             if buffer.as_ref().is_none_or(|buffer| buffer.size() != bytes) {
@@ -341,10 +380,13 @@ impl Layers {
                 *buffer = Some(gpu.empty_buffer(label, bytes, usage));
             }
         };
-        fit(&mut self.counts, "layer counts", band_bytes);
-        fit(&mut self.starts, "layer starts", band_bytes);
+        fit(&mut self.ends, "layer ends", pixels * 4);
+        let runs = pixels.div_ceil(u64::from(RUN));
+        fit(&mut self.runs, "layer runs", runs * 4);
+        fit(&mut self.classes, "classes of layer runs", runs * sort::CLASSES as u64 * 4);
         fit(&mut self.pool, "layers", self.capacity.max(1) * each);
-        fit(&mut self.total, "layer total", 16);
+        self.tally
+            .get_or_insert_with(|| gpu.empty_buffer("layer tally", TALLY_BYTES, usage | wgpu::BufferUsages::INDIRECT));
         let totals = u64::from(samples) * u64::from(self.num_bands);
         if self.readable.as_ref().is_none_or(|(_, count)| *count < totals) {
             let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
@@ -356,7 +398,7 @@ impl Layers {
 
     /// Bytes that they take.
     pub fn bytes(&self) -> u64 {
-        [&self.counts, &self.starts, &self.pool].into_iter().flatten().map(wgpu::Buffer::size).sum()
+        [&self.ends, &self.runs, &self.classes, &self.pool].into_iter().flatten().map(wgpu::Buffer::size).sum()
     }
 
     /// The bands of the picture, each with what its passes bind.
@@ -369,8 +411,8 @@ impl Layers {
     ) -> Result<Vec<Band>, GpuError> {
         let rows = self.size[1].div_ceil(self.num_bands.max(1));
         self.slots.resize_with(self.num_bands as usize, BandSlot::default);
-        let (Some(counts), Some(starts), Some(pool), Some(total), Some((room_layout, _))) =
-            (&self.counts, &self.starts, &self.pool, &self.total, &self.room)
+        let (Some(ends), Some(runs), Some(classes), Some(pool), Some(tally), Some((room_layout, _))) =
+            (&self.ends, &self.runs, &self.classes, &self.pool, &self.tally, &self.room)
         else {
             return Ok(Vec::new());
         };
@@ -388,8 +430,8 @@ impl Layers {
             let stored = |last: Vec<(u32, Bound)>| {
                 let mut bound = vec![
                     (0, Bound::Buffer(params.clone())),
-                    (1, Bound::Buffer(counts.clone())),
-                    (2, Bound::Buffer(starts.clone())),
+                    (1, Bound::Buffer(ends.clone())),
+                    (2, Bound::Buffer(runs.clone())),
                 ];
                 bound.extend(last);
                 bound
@@ -399,7 +441,12 @@ impl Layers {
             bands.push(Band {
                 rows,
                 held,
-                sort: (self.halo > 0).then(|| slot.sort.get(gpu, "sorted layers", room_layout, stored(vec![pool()]))),
+                sort: slot.sort.get(
+                    gpu,
+                    "sorted layers",
+                    room_layout,
+                    stored(vec![pool(), (4, Bound::Buffer(classes.clone()))]),
+                ),
                 raster: slot.raster.get(
                     gpu,
                     "layers",
@@ -410,7 +457,7 @@ impl Layers {
                     gpu,
                     "room of layers",
                     room_layout,
-                    stored(vec![(3, Bound::Buffer(total.clone()))]),
+                    stored(vec![(3, Bound::Buffer(tally.clone())), (4, Bound::Buffer(classes.clone()))]),
                 ),
                 blend: slot.blend.get(
                     gpu,
@@ -442,7 +489,7 @@ impl Layers {
     pub fn can_keep(&self, gpu: &Gpu, size: [u32; 2], memory_bytes: u64) -> bool {
         let limit = most_bytes(gpu, memory_bytes);
         let is_known = (self.size, self.limit) == (size, limit);
-        bands_of_counts(size, limit, HALO) == 1 && !(is_known && (self.is_too_much || self.num_bands > 1))
+        bands_of_lists(size, limit, HALO) == 1 && !(is_known && (self.is_too_much || self.num_bands > 1))
     }
 
     /// The lists of the whole picture, in the order of [`lists_layout`]; none before they are made.
@@ -450,13 +497,11 @@ impl Layers {
     /// # Errors
     /// Never for uniforms of a fixed size.
     pub fn lists(&mut self, gpu: &Gpu) -> Result<Option<Vec<Bound>>, GpuError> {
-        let (Some(counts), Some(starts), Some(pool)) = (&self.counts, &self.starts, &self.pool) else {
-            return Ok(None);
-        };
+        let (Some(ends), Some(runs), Some(pool)) = (&self.ends, &self.runs, &self.pool) else { return Ok(None) };
         let band = band_of(self.size, &(0..self.size[1]), self.capacity);
         let params = self.lists_params.get_or_insert_with(|| KeptBuffer::uniform("lists"));
         let params = params.set(gpu, bytemuck::bytes_of(&band), 16)?;
-        Ok(Some([params, counts.clone(), starts.clone(), pool.clone()].map(Bound::Buffer).to_vec()))
+        Ok(Some([params, ends.clone(), runs.clone(), pool.clone()].map(Bound::Buffer).to_vec()))
     }
 
     /// Draws the layers of one sample.
@@ -477,19 +522,23 @@ impl Layers {
         timer: &mut Option<PassTimer>,
     ) -> Result<(), GpuError> {
         let bands = self.bands(gpu, visibility, shade, to)?;
-        let all_bytes = u64::from(self.size[0]) * u64::from(self.size[1]) * 4;
-        self.all_counts = plan.for_aovs.then(|| {
-            let usage = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
-            gpu.empty_buffer("all layer counts", all_bytes, usage)
-        });
-        let (Some(counts), Some(total), Some((readable, _)), Some((_, room))) =
-            (&self.counts, &self.total, &self.readable, &self.room)
+        let (Some(ends), Some(runs), Some(classes), Some(tally), Some((readable, _)), Some((_, room))) =
+            (&self.ends, &self.runs, &self.classes, &self.tally, &self.readable, &self.room)
         else {
             return Ok(());
         };
+        self.all_lists = plan.for_aovs.then(|| {
+            let usage = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+            let bands: Vec<BandLists> =
+                bands.iter().map(|band| BandLists { rows: band.rows.clone(), held: band.held.clone() }).collect();
+            let words: usize = bands.iter().flat_map(|band| band.words(self.size[0])).sum();
+            (gpu.empty_buffer("all layer lists", words as u64 * 4, usage), bands)
+        });
+        let mut copied = 0;
         for (index, band) in bands.iter().enumerate() {
-            encoder.clear_buffer(counts, 0, None);
-            encoder.clear_buffer(total, 0, None);
+            encoder.clear_buffer(ends, 0, None);
+            encoder.clear_buffer(tally, 0, None);
+            encoder.clear_buffer(classes, 0, None);
             let raster = |name, key| VisibilityPass { name, key, ..*pass };
             let (rows, held) = (band.rows.clone(), band.held.clone());
             let counted = raster("layers_counted", plan.count);
@@ -502,29 +551,29 @@ impl Layers {
                 pass.set_pipeline(room);
                 pass.set_bind_group(0, &band.room, &[]);
                 let pixels = (held.end - held.start) * self.size[0];
-                pass.dispatch_workgroups(pixels.div_ceil(ROOM_RUN * ROOM_GROUP), 1, 1);
+                pass.dispatch_workgroups(pixels.div_ceil(RUN * ROOM_GROUP), 1, 1);
             }
-            encoder.copy_buffer_to_buffer(total, 0, readable, self.num_totals * TOTAL_BYTES, Some(TOTAL_BYTES));
+            encoder.copy_buffer_to_buffer(tally, 0, readable, self.num_totals * TOTAL_BYTES, Some(TOTAL_BYTES));
             self.num_totals += 1;
             let written = raster("layers_written", plan.write);
             visibility.draw_layers(encoder, scene, objects, &written, &band.raster, held.clone(), timer);
-            if let Some((sort, group)) = self.sort.as_ref().zip(band.sort.as_ref()) {
+            {
                 let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                     label: Some("sorted layers"),
                     timestamp_writes: timer.as_mut().and_then(|timer| timer.compute_pass("layers_sorted")),
                 });
-                pass.set_pipeline(sort);
-                pass.set_bind_group(0, group, &[]);
-                pass.dispatch_workgroups(
-                    self.size[0].div_ceil(SORT_SIDE),
-                    (held.end - held.start).div_ceil(SORT_SIDE),
-                    1,
-                );
+                pass.set_bind_group(0, &band.sort, &[]);
+                for (class, sort) in (1..).zip(&self.sort) {
+                    pass.set_pipeline(sort);
+                    pass.dispatch_workgroups_indirect(tally, class * CLASS_BYTES);
+                }
             }
-            if let Some(all) = self.all_counts.as_ref().filter(|_| plan.for_aovs) {
-                let [from, start, length] = [rows.start - held.start, rows.start, rows.end - rows.start]
-                    .map(|rows| u64::from(rows * self.size[0]) * 4);
-                encoder.copy_buffer_to_buffer(counts, from, all, start, Some(length));
+            if let Some((all, bands)) = &self.all_lists {
+                for (from, words) in [ends, runs].into_iter().zip(bands[index].words(self.size[0])) {
+                    let bytes = words as u64 * 4;
+                    encoder.copy_buffer_to_buffer(from, 0, all, copied, Some(bytes));
+                    copied += bytes;
+                }
             }
             let clears = to.clears && index == 0;
             let groups = [&scene.group, shade_group, &band.blend];
@@ -557,7 +606,20 @@ impl Layers {
     /// # Errors
     /// [`GpuError::Driver`] where they cannot be read.
     pub fn read_counts(&mut self, gpu: &Gpu) -> Result<Option<Vec<u32>>, GpuError> {
-        self.all_counts.take().map(|counts| read_words(gpu, &counts)).transpose()
+        let Some((all, bands)) = self.all_lists.take() else { return Ok(None) };
+        let words = read_words(gpu, &all)?;
+        let mut counts = Vec::with_capacity(self.size.map(|side| side as usize).iter().product());
+        let mut left = &words[..];
+        for band in bands {
+            let [num_ends, num_runs] = band.words(self.size[0]);
+            let ((ends, rest), skipped) = (left.split_at(num_ends), band.rows.start - band.held.start);
+            let [before, of_rows] =
+                [skipped, band.rows.end - band.rows.start].map(|rows| (rows * self.size[0]) as usize);
+            let bounds = bounds_of(ends, &rest[..num_runs]).skip(before).take(of_rows);
+            counts.extend(bounds.map(|[start, end]| end.saturating_sub(start)));
+            left = &rest[num_runs..];
+        }
+        Ok(Some(counts))
     }
 
     /// All fragments of each pixel of the last frame, from near to far: the bits of its depth, and its id. None where it was drawn in
@@ -565,14 +627,16 @@ impl Layers {
     ///
     /// # Errors
     /// [`GpuError::Driver`] where they cannot be read.
-    pub fn read_lists(&self, gpu: &Gpu, counts: &[u32]) -> Result<Option<Vec<Vec<[u32; 2]>>>, GpuError> {
-        let (Some(starts), Some(pool), 1) = (&self.starts, &self.pool, self.num_bands) else { return Ok(None) };
-        let (starts, pool) = (read_words(gpu, starts)?, read_words(gpu, pool)?);
-        let list = |(start, count): (&u32, &u32)| {
-            let words = pool.chunks_exact(2).skip(*start as usize).take(*count as usize);
+    pub fn read_lists(&self, gpu: &Gpu) -> Result<Option<Vec<Vec<[u32; 2]>>>, GpuError> {
+        let (Some(ends), Some(runs), Some(pool), 1) = (&self.ends, &self.runs, &self.pool, self.num_bands) else {
+            return Ok(None);
+        };
+        let (ends, runs, pool) = (read_words(gpu, ends)?, read_words(gpu, runs)?, read_words(gpu, pool)?);
+        let list = |[start, end]: [u32; 2]| {
+            let words = pool.chunks_exact(2).skip(start as usize).take(end.saturating_sub(start) as usize);
             words.map(|words| [words[0], words[1]]).collect()
         };
-        Ok(Some(starts.iter().zip(counts).map(list).collect()))
+        Ok(Some(bounds_of(&ends, &runs).map(list).collect()))
     }
 
     /// Whether the pool held all fragments of the frame that was submitted last; where not, it has grown. Waits for the frame.
@@ -593,7 +657,8 @@ impl Layers {
         if needed <= self.capacity {
             return Ok(true);
         }
-        let wanted = (needed as f64 * SLACK) as u64;
+        let wanted = (needed as f64 * SLACKS[usize::from(self.has_grown)]) as u64;
+        self.has_grown = true;
         let most = most_bytes(gpu, memory_bytes) / fragment_bytes(self.keeps_light);
         if wanted > most && self.keeps_light {
             // Drawn again without their light, which may fit at once.
@@ -602,7 +667,7 @@ impl Layers {
         }
         if wanted > most {
             self.num_bands = (u64::from(self.num_bands) * wanted.div_ceil(most.max(1))).min(u64::from(u32::MAX)) as u32;
-            (self.counts, self.starts) = (None, None);
+            (self.ends, self.runs) = (None, None);
         }
         self.capacity = wanted.min(most);
         Ok(false)
@@ -611,15 +676,18 @@ impl Layers {
 
 /// The WGSL of nearest ids.
 pub fn nearest_module() -> Module {
-    Module::new(&[wgsl!("lib/fullscreen.wgsl"), wgsl!("lib/layers.wgsl"), wgsl!("layers/nearest.wgsl")])
-}
-
-/// The WGSL that puts all lists in order.
-pub fn sort_module() -> Module {
-    Module::new(&[wgsl!("lib/layers.wgsl"), wgsl!("lib/sort_layers.wgsl"), wgsl!("layers/sort.wgsl")])
+    Module::new(&[
+        wgsl!("lib/fullscreen.wgsl"),
+        wgsl!("lib/layers.wgsl"),
+        wgsl!("lib/layer_lists.wgsl"),
+        wgsl!("layers/nearest.wgsl"),
+    ])
 }
 
 /// The WGSL that gives lists their room.
 pub fn room_module() -> Module {
-    Module::new(&[wgsl!("lib/layers.wgsl"), wgsl!("layers/room.wgsl")])
+    let mut module = Module::new(&[wgsl!("lib/layers.wgsl")]);
+    module.add_generated("classes of runs", sort::constants());
+    module.add(wgsl!("layers/room.wgsl"));
+    module
 }

@@ -16,6 +16,7 @@ mod post;
 mod resolve;
 mod shade;
 mod shadow;
+pub mod sort;
 mod targets;
 mod texels;
 mod view;
@@ -724,10 +725,8 @@ impl Renderer {
         let single = FrameInput { samples: 1, wide: true, tile: None, shadows_drawn: false, ..input.clone() };
         self.draw_frame(&single, false, &mut |_| ControlFlow::Continue(()), Some(&mut Vec::new()))?;
         let gpu = Arc::clone(&self.gpu);
-        let (Some(words), Some(counts)) = (self.bkb.read(&gpu)?, self.layers.read_counts(&gpu)?) else {
-            return Ok(None);
-        };
-        let fragments = self.layers.read_lists(&gpu, &counts)?;
+        let Some(words) = self.bkb.read(&gpu)? else { return Ok(None) };
+        let fragments = self.layers.read_lists(&gpu)?;
         Ok(fragments.map(|fragments| BkbWords { fragments, ..words }))
     }
 

@@ -482,16 +482,16 @@ pub fn shade_module(key: &ShadeKey) -> Module {
     let mut module = Module::new(&[wgsl!("lib/fullscreen.wgsl")]);
     add_shading(&mut module, key);
     if let Some((finish, _)) = key.layers {
+        let asks = key.asks_neighbours();
         module.add(wgsl!("lib/geometry.wgsl"));
         module.add_generated(
             "layers options",
-            format!("const FINISH: u32 = {}u;\nconst SORTED: bool = {};", finish.number(), key.asks_neighbours()),
+            format!("const FINISH: u32 = {}u;\nconst ASKS_NEIGHBOURS: bool = {asks};", finish.number()),
         );
         module.add(wgsl!("lib/finish.wgsl"));
         module.add(wgsl!("lib/layers.wgsl"));
         module.add(wgsl!("layers/lists.wgsl"));
-        module.add(wgsl!("lib/sort_layers.wgsl"));
-        let asks = key.asks_neighbours();
+        module.add(wgsl!("lib/layer_lists.wgsl"));
         if asks {
             module.add(wgsl!("lib/trace.wgsl"));
         }

@@ -9,6 +9,7 @@ use naga::{AddressSpace, Handle, Type, TypeInner};
 use restyle::effects::EFFECTS;
 use restyle::frame::bkb::{self, BkbForm, BkbKey, FragmentKind};
 use restyle::frame::mesh::MeshForm;
+use restyle::frame::sort;
 use restyle::frame::{
     Drawn, EffectKey, Finish, ShadeKey, ShaderNeeds, ShadowFilter, VisibilityKey, aov_module, effect_module, layers,
     mesh_module, resolve_module, shade_module, visibility_module,
@@ -75,7 +76,9 @@ pub fn survey() -> &'static Survey {
         }
         survey.read("resolve", &resolve_module());
         survey.read("room of layers", &layers::room_module());
-        survey.read("sorted layers", &layers::sort_module());
+        for class in 0..sort::CLASSES {
+            survey.read(&format!("sorted layers of class {class}"), &sort::sort_module(class));
+        }
         survey.read("nearest layers", &layers::nearest_module());
         for key in effect_keys() {
             survey.read(&format!("effect, {key:?}"), &effect_module(&key));
