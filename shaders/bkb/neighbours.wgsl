@@ -37,9 +37,8 @@ fn most_like(first: u32, range: vec2<u32>, fragment: BkbFragment) -> u32 {
     var least = 1e9;
     for (var slot = range.x; slot <= range.y; slot++) {
         if bkb_z[first + slot] == EMPTY { break; }
-        if !is_stored(first, slot) { continue; }
         let error = unlikeness(fragment, fragment_at(first, slot));
-        if error < least {
+        if is_stored(first, slot) && error < least {
             least = error;
             best = slot;
         }

@@ -1,5 +1,8 @@
 // Colour and opacity of each fragment by the curvature of its surface [Murray2016 §5]: kappa = tanh(k1 + k2), with the scene's radius
 // as the unit of length, negative where the surface is convex; -1 where a neighbour is missing.
+//
+// No loop is left from within another, nor skips a turn: while Mesa 22.3 compiles such a nest for its software adapter it writes to memory
+// that it has freed.
 
 @group(2) @binding(0) var<uniform> bkb: BkbBand;
 @group(2) @binding(1) var<storage, read_write> bkb_z: array<u32>;
@@ -21,13 +24,16 @@ fn kappa_of(at: vec2<u32>, own: u32, fragment: BkbFragment, shape: u32, scale: f
         vec2<u32>(low.x, at.y), vec2<u32>(high.x, at.y), vec2<u32>(at.x, high.y), vec2<u32>(at.x, low.y),
     );
     var normals: array<vec3<f32>, 4>;
-    for (var side = 0u; side < 4u; side++) {
+    var is_whole = true;
+    for (var side = 0u; side < 4u && is_whole; side++) {
         normals[side] = fragment.normal;
-        if all(places[side] == at) { continue; }
-        let found = neighbour(first_slot(bkb, places[side]), shape, fragment, own, range);
-        if !found.is_there { return -1.0; }
-        normals[side] = found.normal;
+        if any(places[side] != at) {
+            let found = neighbour(first_slot(bkb, places[side]), shape, fragment, own, range);
+            is_whole = found.is_there;
+            normals[side] = found.normal;
+        }
     }
+    if !is_whole { return -1.0; }
     let steps = vec2<f32>(high - low) * view.plane_from_px.xy;
     // A picture of one column or row has no difference across it.
     let inverse = select(1.0 / steps, vec2<f32>(0.0), low == high);
@@ -39,6 +45,16 @@ fn kappa_of(at: vec2<u32>, own: u32, fragment: BkbFragment, shape: u32, scale: f
     return tanh(clamp(curvature_of(dx, dy, plane, depth_of(fragment)) * scale, -10.0, 10.0));
 }
 
+fn stylise_slot(at: vec2<u32>, first: u32, slot: u32, shape: u32) {
+    let fragment = fragment_at(first, slot);
+    let word = bkb_d[(first + slot) * 2u];
+    let material = word >> 24u;
+    let kappa = kappa_of(at, first, fragment, shape, curvature_scale(material, bkb.curvature_scale));
+    keep_kappa(first + slot, kappa);
+    let styled = stylised(material, unpack_color(word), kappa, depth_of(fragment));
+    bkb_d[(first + slot) * 2u] = pack_color(styled.rgb, u32(clamp(styled.a, 0.0, 1.0) * 255.0 + 0.5));
+}
+
 @compute @workgroup_size(8, 8)
 fn stylise(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let at = invocation.xy + vec2<u32>(0u, bkb.first_drawn);
@@ -48,13 +64,6 @@ fn stylise(@builtin(global_invocation_id) invocation: vec3<u32>) {
         let key = bkb_z[first + slot];
         if key == EMPTY { break; }
         // Kept by the first pass and not found by the second: it stays invisible.
-        if !is_stored(first, slot) { continue; }
-        let fragment = fragment_at(first, slot);
-        let word = bkb_d[(first + slot) * 2u];
-        let material = word >> 24u;
-        let kappa = kappa_of(at, first, fragment, key >> 16u, curvature_scale(material, bkb.curvature_scale));
-        keep_kappa(first + slot, kappa);
-        let styled = stylised(material, unpack_color(word), kappa, depth_of(fragment));
-        bkb_d[(first + slot) * 2u] = pack_color(styled.rgb, u32(clamp(styled.a, 0.0, 1.0) * 255.0 + 0.5));
+        if is_stored(first, slot) { stylise_slot(at, first, slot, key >> 16u); }
     }
 }
