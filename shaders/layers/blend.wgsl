@@ -21,12 +21,13 @@ fn blended(position_px: vec2<f32>) -> Blended {
     let list = list_of(u32(at.y) * layers.width + u32(at.x) - layers.first_pixel);
     if list.count == 0u { return result; }
     let ray = ray_at(view, position_px);
+    var neighbours = neighbours_of(position_px);
     var light = vec3<f32>(0.0);
     var open = 1.0;
     for (var index = 0u; index < list.count; index++) {
         let id = layer_pool[list.start + index].y;
         var s = surface_at(ray, id);
-        if ASKS_NEIGHBOURS { s.kappa_of_screen = kappa_of_screen(s, position_px); }
+        if ASKS_NEIGHBOURS { s.kappa_of_screen = kappa_of_screen(s, position_px, &neighbours); }
         let material = material_of(id);
         let drawn = shade_layer(s, material);
         light += open * drawn.a * drawn.rgb;

@@ -10,10 +10,11 @@ fn kept(position_px: vec2<f32>) -> vec4<u32> {
     let list = list_of(u32(at.y) * layers.width + u32(at.x) - layers.first_pixel);
     if list.count == 0u { return nearest; }
     let ray = ray_at(view, position_px);
+    var neighbours = neighbours_of(position_px);
     for (var index = 0u; index < list.count; index++) {
         let id = layer_pool[list.start + index].y;
         var s = surface_at(ray, id);
-        if ASKS_NEIGHBOURS { s.kappa_of_screen = kappa_of_screen(s, position_px); }
+        if ASKS_NEIGHBOURS { s.kappa_of_screen = kappa_of_screen(s, position_px, &neighbours); }
         let drawn = shade_layer(s, material_of(id));
         let light = vec2<u32>(pack2x16float(drawn.rg), pack2x16float(drawn.ba));
         layer_pool[layers.capacity + list.start + index] = light;

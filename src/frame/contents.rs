@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::mesh::MeshForm;
 use super::objects::{self, Connector, DrawList, Material, ObjectBuffers};
 use super::occlusion::Reach;
-use super::shade::{ShadeKey, ShaderNeeds};
+use super::shade::{LayerWork, ShadeKey, ShaderNeeds};
 use super::shadow::ShadowFilter;
 use super::texels::KeptTexture;
 use super::visibility::DrawnKinds;
@@ -144,7 +144,7 @@ impl Needs {
             encode: false,
             geometry: false,
             layers: None,
-            keeps_layers: false,
+            layer_work: LayerWork::default(),
         };
         Needs { kinds: objects.kinds, key, layered: materials.has_layers(), num_materials: materials.common.len() }
     }

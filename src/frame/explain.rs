@@ -1,7 +1,7 @@
 //! The passes of a frame with their reasons, sizes and bytes, told without drawing any.
 
 use super::bkb::BkbPlan;
-use super::layers::LayersPlan;
+use super::layers::{self, LayersPlan};
 use super::shadow::{MAX_SHADOWS, ShadowMaps};
 use super::{FrameInput, OUTPUT_8, OUTPUT_16, Plan, light_format};
 use super::{post::COLOR_FORMAT, post::GEOMETRY_FORMAT, visibility::DEPTH_FORMAT, visibility::ID_FORMAT};
@@ -141,7 +141,7 @@ fn layer_steps(gpu: &Gpu, plan: &Plan, size: [u32; 2], memory_bytes: u64) -> Vec
 
 /// The passes that keep all fragments in lists.
 fn list_steps(layers: &LayersPlan, size: [u32; 2]) -> Vec<Step> {
-    let lists = 2 * 4 * u64::from(size[0]) * u64::from(size[1]);
+    let lists = layers::list_bytes(u64::from(size[0]) * u64::from(size[1])).iter().sum();
     let mut steps = vec![
         Step::drawn(
             "layers_counted",
@@ -152,22 +152,18 @@ fn list_steps(layers: &LayersPlan, size: [u32; 2]) -> Vec<Step> {
         Step::drawn("layers_room", size, 0, "each pixel's list gets its place in the pool"),
         Step::drawn("layers_written", size, 0, "8 bytes for each fragment, in a pool of as many as there are"),
     ];
-    let sorted = layers.halo > 0;
-    if sorted {
-        let reason = "curvature is found from neighbouring pixels, whose lists must be in order";
-        steps.push(Step::drawn("layers_sorted", size, 0, reason));
+    steps.push(Step::drawn("layers_sorted", size, 0, "each list is put in order, short ones in registers"));
+    if layers.mark.is_some() {
+        let reason = "curvature is found from neighbouring pixels: 8 bytes more a fragment, of its normal and object";
+        steps.push(Step::drawn("layers_marked", size, 0, reason));
     }
-    let shaded = if sorted { "shaded" } else { "sorted, shaded" };
     steps.push(match layers.apart {
         Some(_) => {
             let reason =
-                format!("each list is {shaded} and kept, with 8 bytes more a fragment, for an effect that sees each at its own depth");
+                "each list is shaded and kept, with 8 bytes more a fragment, for an effect that sees each at its own depth";
             Step::drawn("layers_kept", size, 0, reason)
         }
-        None => {
-            let reason = format!("each list is {shaded} and blended until no light comes through");
-            Step::drawn("layers_blended", size, 0, reason)
-        }
+        None => Step::drawn("layers_blended", size, 0, "each list is shaded and blended until no light comes through"),
     });
     if layers.leaves_surfaces() {
         let reason = "a post effect follows, which sees the nearest surface";

@@ -13,7 +13,7 @@ use super::ShadeKey;
 use super::fullscreen;
 use super::objects::ObjectBuffers;
 use super::post::Finish;
-use super::shade::Shade;
+use super::shade::{LayerWork, Shade};
 use super::sort::{self, sort_module};
 use super::visibility::{Drawn, ID_FORMAT, SceneBindings, Visibility, VisibilityKey, VisibilityPass};
 use crate::gpu::{Bound, Gpu, GpuError, KeptBindGroup, KeptBuffer, Module, PassTimer, read_words};
@@ -24,9 +24,10 @@ use crate::{gpu_struct, wgsl};
 const TOTAL_BYTES: u64 = 8;
 const CLASS_BYTES: u64 = 16;
 const TALLY_BYTES: u64 = CLASS_BYTES * (1 + sort::CLASSES as u64);
-/// Bytes of a fragment, and of its light where that is kept.
+/// Bytes of a fragment, of its light where that is kept, and of what neighbouring pixels ask of it where they do.
 const FRAGMENT_BYTES: u64 = 8;
 const LIGHT_BYTES: u64 = 8;
+const MARK_BYTES: u64 = 8;
 /// Fragments for each pixel that a pool holds before more are known to be there.
 const FIRST_LAYERS: u64 = 4;
 /// How much more than what was needed a pool holds: next to nothing for a still, which outgrows it once; more for a scene that is turned
@@ -58,8 +59,8 @@ gpu_struct! {
 pub struct LayersPlan {
     /// The shading of blended fragments.
     pub shade: ShadeKey,
-    /// Rows and columns around each pixel whose fragments its own ask for.
-    pub halo: u32,
+    /// What marks fragments for those of neighbouring pixels, where these ask.
+    pub mark: Option<ShadeKey>,
     /// Counting.
     pub count: VisibilityKey,
     /// Writing.
@@ -135,8 +136,8 @@ pub struct Layers {
     capacity: u64,
     /// Whether it has grown for pictures of this size.
     has_grown: bool,
-    /// Whether it holds their light as well.
-    keeps_light: bool,
+    /// What it holds of each.
+    each: Each,
     /// Whether the lists of a picture of this size are too many to be kept at once.
     is_too_much: bool,
     num_bands: u32,
@@ -203,8 +204,24 @@ fn band_layout(gpu: &Gpu, label: &'static str, textures: &[wgpu::TextureSampleTy
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
 }
 
-fn fragment_bytes(keeps_light: bool) -> u64 {
-    FRAGMENT_BYTES + if keeps_light { LIGHT_BYTES } else { 0 }
+/// What a pool holds of each fragment beside its depth and id.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+struct Each {
+    light: bool,
+    mark: bool,
+}
+
+impl Each {
+    fn bytes(self) -> u64 {
+        let more = [(self.light, LIGHT_BYTES), (self.mark, MARK_BYTES)];
+        FRAGMENT_BYTES + more.iter().filter(|(holds, _)| *holds).map(|(_, bytes)| bytes).sum::<u64>()
+    }
+}
+
+/// Bytes of the lists of so many pixels beside their fragments: of their ends, of runs of them, and of the classes of these.
+pub fn list_bytes(pixels: u64) -> [u64; 3] {
+    let runs = pixels.div_ceil(u64::from(RUN));
+    [pixels, runs, runs * sort::CLASSES as u64].map(|words| words * 4)
 }
 
 /// Bands of which each has as many lists as fit a binding.
@@ -269,7 +286,7 @@ impl LayersPlan {
     ) -> LayersPlan {
         let shade = ShadeKey {
             layers: Some((finish, surfaces)),
-            keeps_layers: apart.is_some(),
+            layer_work: if apart.is_some() { LayerWork::Keep } else { LayerWork::Blend },
             hulls: false,
             encode: false,
             geometry: true,
@@ -277,7 +294,9 @@ impl LayersPlan {
         };
         let raster = |drawn| VisibilityKey { drawn, hulls: false, ..seen };
         LayersPlan {
-            halo: if shade.asks_neighbours() { HALO } else { 0 },
+            mark: shade
+                .asks_neighbours()
+                .then(|| ShadeKey { layer_work: LayerWork::Mark { keeps_light: apart.is_some() }, ..shade.clone() }),
             shade,
             count: raster(Drawn::CountedLayers),
             write: raster(Drawn::WrittenLayers),
@@ -344,11 +363,11 @@ impl Layers {
     /// # Errors
     /// [`GpuError::TooMany`] where a row of the picture alone outgrows a binding.
     fn fit(&mut self, gpu: &Gpu, size: [u32; 2], limit: u64, samples: u32, plan: &LayersPlan) -> Result<(), GpuError> {
-        let (keeps_light, halo) = (plan.apart.is_some(), plan.halo);
-        let each = fragment_bytes(keeps_light);
+        let holds = Each { light: plan.apart.is_some(), mark: plan.mark.is_some() };
+        let (each, halo) = (holds.bytes(), if holds.mark { HALO } else { 0 });
         let most = limit / each;
-        if keeps_light != self.keeps_light {
-            self.keeps_light = keeps_light;
+        if holds != self.each {
+            self.each = holds;
             self.capacity = self.capacity.min(most);
             self.pool = None;
         }
@@ -380,10 +399,10 @@ impl Layers {
                 *buffer = Some(gpu.empty_buffer(label, bytes, usage));
             }
         };
-        fit(&mut self.ends, "layer ends", pixels * 4);
-        let runs = pixels.div_ceil(u64::from(RUN));
-        fit(&mut self.runs, "layer runs", runs * 4);
-        fit(&mut self.classes, "classes of layer runs", runs * sort::CLASSES as u64 * 4);
+        let [ends, runs, classes] = list_bytes(pixels);
+        fit(&mut self.ends, "layer ends", ends);
+        fit(&mut self.runs, "layer runs", runs);
+        fit(&mut self.classes, "classes of layer runs", classes);
         fit(&mut self.pool, "layers", self.capacity.max(1) * each);
         self.tally
             .get_or_insert_with(|| gpu.empty_buffer("layer tally", TALLY_BYTES, usage | wgpu::BufferUsages::INDIRECT));
@@ -577,6 +596,9 @@ impl Layers {
             }
             let clears = to.clears && index == 0;
             let groups = [&scene.group, shade_group, &band.blend];
+            if let Some(mark) = &plan.mark {
+                shade.draw_layers(encoder, mark, groups, pass.view, to, false, held.clone(), timer);
+            }
             shade.draw_layers(encoder, &plan.shade, groups, pass.view, to, clears, rows.clone(), timer);
             if let Some(nearest) = self.nearest.as_ref().filter(|_| plan.has_nearest()) {
                 let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -659,8 +681,8 @@ impl Layers {
         }
         let wanted = (needed as f64 * SLACKS[usize::from(self.has_grown)]) as u64;
         self.has_grown = true;
-        let most = most_bytes(gpu, memory_bytes) / fragment_bytes(self.keeps_light);
-        if wanted > most && self.keeps_light {
+        let most = most_bytes(gpu, memory_bytes) / self.each.bytes();
+        if wanted > most && self.each.light {
             // Drawn again without their light, which may fit at once.
             self.is_too_much = true;
             return Ok(false);

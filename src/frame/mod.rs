@@ -37,7 +37,7 @@ use occlusion::Reach;
 pub use post::{Effect, EffectKey, Finish, effect_module};
 use post::{EffectGroups, LayersAt, Post, PostTargets, turn};
 pub use resolve::resolve_module;
-pub use shade::{Output, ShadeKey, ShaderNeeds, shade_module};
+pub use shade::{LayerWork, Output, ShadeKey, ShaderNeeds, shade_module};
 use shade::{Shade, ShadeInputs, ShadeTarget};
 pub use shadow::{MAX_SHADOWS, SHADOWLESS_RADII, ShadowFilter, ShadowQuality, ShadowView, Shadows};
 use shadow::{ShadowMaps, ShadowPlan};
@@ -396,7 +396,9 @@ impl Renderer {
             for key in [layers.count, layers.write] {
                 self.visibility.prepare(gpu, needs.kinds, key)?;
             }
-            self.shade.prepare(gpu, &self.visibility, &layers.shade)?;
+            for key in [&layers.shade].into_iter().chain(&layers.mark) {
+                self.shade.prepare(gpu, &self.visibility, key)?;
+            }
             self.layers.prepare(gpu, &self.shade, layers)?;
         }
         if let Some(bkb) = &plan.bkb {

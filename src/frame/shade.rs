@@ -65,9 +65,30 @@ pub struct ShadeKey {
     /// Layers of what is transparent instead of the nearest surface: where the blended picture goes, and whether its nearest
     /// surface goes beside it.
     pub layers: Option<(Finish, bool)>,
-    /// Whether layers are shaded and kept, each with its own light, instead of being blended; a surface beside them is then that of
-    /// lines.
-    pub keeps_layers: bool,
+    /// What is done with layers, where there are any.
+    pub layer_work: LayerWork,
+}
+
+/// What is done with the layers of a pixel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub enum LayerWork {
+    /// They are shaded and blended.
+    #[default]
+    Blend,
+    /// They are shaded and kept, each with its own light; a surface beside them is then that of lines.
+    Keep,
+    /// What neighbouring pixels ask of them is kept.
+    Mark {
+        /// Whether their light will be, too.
+        keeps_light: bool,
+    },
+}
+
+impl LayerWork {
+    /// Whether the pool has room for their light.
+    fn keeps_light(self) -> bool {
+        matches!(self, LayerWork::Keep | LayerWork::Mark { keeps_light: true })
+    }
 }
 
 /// What a style needs of one shader.
@@ -82,6 +103,15 @@ pub struct ShaderNeeds {
 }
 
 impl ShadeKey {
+    /// Whether all that it leaves lies in the pool of layers.
+    fn has_no_target(&self) -> bool {
+        self.layers.is_some_and(|(_, surfaces)| match self.layer_work {
+            LayerWork::Blend => false,
+            LayerWork::Keep => !surfaces,
+            LayerWork::Mark { .. } => true,
+        })
+    }
+
     /// Whether its layers, where it has any, are shaded by what lies beside them in neighbouring pixels.
     pub fn asks_neighbours(&self) -> bool {
         self.shaders.iter().any(|needs| SHADERS[needs.shader].asks_neighbours(needs.features))
@@ -222,10 +252,9 @@ impl Shade {
             bind_group_layouts: &groups,
             immediate_size: 0,
         });
-        let kept_alone = key.keeps_layers && key.layers.is_some_and(|(_, surfaces)| !surfaces);
-        let (entry_point, targets) = if kept_alone {
-            ("keep_layers", Vec::new())
-        } else if key.keeps_layers && key.layers.is_some() {
+        let (entry_point, targets) = if key.has_no_target() {
+            (if key.layer_work == LayerWork::Keep { "keep_layers" } else { "mark_layers" }, Vec::new())
+        } else if key.layer_work == LayerWork::Keep && key.layers.is_some() {
             let formats = [post::COLOR_FORMAT, post::GEOMETRY_FORMAT];
             ("keep_layers_geometry", formats.map(|format| Some(format.into())).to_vec())
         } else if let Some((finish, surfaces)) = key.layers {
@@ -252,10 +281,10 @@ impl Shade {
             primitive: Default::default(),
             // The pass lies behind all that is drawn: only pixels that see something are shaded at all. A pass without
             // another target has this one, and passes everywhere.
-            depth_stencil: (key.layers.is_none() || kept_alone).then(|| wgpu::DepthStencilState {
+            depth_stencil: (key.layers.is_none() || key.has_no_target()).then(|| wgpu::DepthStencilState {
                 format: DEPTH_FORMAT,
                 depth_write_enabled: Some(false),
-                depth_compare: Some(match kept_alone {
+                depth_compare: Some(match key.has_no_target() {
                     true => wgpu::CompareFunction::Always,
                     false => wgpu::CompareFunction::Less,
                 }),
@@ -456,9 +485,14 @@ impl Shade {
                 ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
             })
         };
-        let attachments: Vec<_> = to.to.into_iter().chain(to.to_geometry).map(attachment).collect();
+        let targets = to.to.into_iter().chain(to.to_geometry).filter(|_| !key.has_no_target());
+        let attachments: Vec<_> = targets.map(attachment).collect();
         let depth = wgpu::RenderPassDepthStencilAttachment { view: to.depth, depth_ops: None, stencil_ops: None };
-        let name = if key.keeps_layers { "layers_kept" } else { "layers_blended" };
+        let name = match key.layer_work {
+            LayerWork::Blend => "layers_blended",
+            LayerWork::Keep => "layers_kept",
+            LayerWork::Mark { .. } => "layers_marked",
+        };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(name),
             color_attachments: &attachments,
@@ -486,17 +520,31 @@ pub fn shade_module(key: &ShadeKey) -> Module {
         module.add(wgsl!("lib/geometry.wgsl"));
         module.add_generated(
             "layers options",
-            format!("const FINISH: u32 = {}u;\nconst ASKS_NEIGHBOURS: bool = {asks};", finish.number()),
+            format!(
+                "const FINISH: u32 = {}u;\nconst ASKS_NEIGHBOURS: bool = {asks};\nconst KEEPS_LIGHT: bool = {};",
+                finish.number(),
+                key.layer_work.keeps_light()
+            ),
         );
         module.add(wgsl!("lib/finish.wgsl"));
         module.add(wgsl!("lib/layers.wgsl"));
         module.add(wgsl!("layers/lists.wgsl"));
         module.add(wgsl!("lib/layer_lists.wgsl"));
-        if asks {
-            module.add(wgsl!("lib/trace.wgsl"));
+        let marks = matches!(key.layer_work, LayerWork::Mark { .. });
+        if asks || marks {
+            module.add(wgsl!("lib/marks.wgsl"));
         }
-        module.add(if asks { wgsl!("layers/neighbours.wgsl") } else { wgsl!("layers/neighbours_none.wgsl") });
-        module.add(if key.keeps_layers { wgsl!("layers/keep.wgsl") } else { wgsl!("layers/blend.wgsl") });
+        if asks && !marks {
+            module.add(wgsl!("lib/trace.wgsl"));
+            module.add(wgsl!("layers/neighbours.wgsl"));
+        } else if !marks {
+            module.add(wgsl!("layers/neighbours_none.wgsl"));
+        }
+        module.add(match key.layer_work {
+            LayerWork::Blend => wgsl!("layers/blend.wgsl"),
+            LayerWork::Keep => wgsl!("layers/keep.wgsl"),
+            LayerWork::Mark { .. } => wgsl!("layers/mark.wgsl"),
+        });
     } else if key.geometry {
         module.add(wgsl!("lib/geometry.wgsl"));
         module.add(wgsl!("objects/shade_geometry.wgsl"));

@@ -11,8 +11,8 @@ use restyle::frame::bkb::{self, BkbForm, BkbKey, FragmentKind};
 use restyle::frame::mesh::MeshForm;
 use restyle::frame::sort;
 use restyle::frame::{
-    Drawn, EffectKey, Finish, ShadeKey, ShaderNeeds, ShadowFilter, VisibilityKey, aov_module, effect_module, layers,
-    mesh_module, resolve_module, shade_module, visibility_module,
+    Drawn, EffectKey, Finish, LayerWork, ShadeKey, ShaderNeeds, ShadowFilter, VisibilityKey, aov_module, effect_module,
+    layers, mesh_module, resolve_module, shade_module, visibility_module,
 };
 use restyle::gpu::Module;
 use restyle::shading::SHADERS;
@@ -257,7 +257,11 @@ fn shade_key(shaders: u32, switches: u32, features: u32) -> ShadeKey {
         encode: on(8),
         soft_taps: if on(12) { 16 } else { 0 },
         geometry: on(15),
-        keeps_layers: on(21),
+        layer_work: match (on(21), on(16)) {
+            (false, false) => LayerWork::Blend,
+            (false, true) => LayerWork::Mark { keeps_light: on(8) },
+            (true, _) => LayerWork::Keep,
+        },
         layers: on(17).then_some((if on(16) { Finish::Add } else { Finish::Next }, on(15))),
         shadow_filter: if on(16) { ShadowFilter::Depth } else { ShadowFilter::Objects },
         orthographic: on(11),

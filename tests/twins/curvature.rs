@@ -1,6 +1,7 @@
 //! Twin of `shaders/objects/curvature.wgsl` and `shaders/lib/transfer.wgsl`, and the device held to it, to formulas of surfaces,
 //! and to the reference renderer.
 
+use std::fmt::Write as _;
 use std::ops::ControlFlow;
 
 use glam::{DVec2, DVec3};
@@ -356,6 +357,33 @@ fn curvature_of_neighbouring_pixels_is_that_of_the_surface() {
         let error = (error / sum).sqrt();
         eprintln!("{camera}: {error:.5} over {count} pixels");
         assert!(count > 5000 && error < 0.005, "{camera}: {error} over {count} pixels");
+    }
+}
+
+/// Two sides of a roof are flat: what is beside a fragment on the other one says nothing of it.
+#[test]
+fn neighbours_are_of_one_object() {
+    let Some(gpu) = gpu::device() else { return };
+    let mut text = String::new();
+    for (index, side) in [-1.0, 0.0].into_iter().enumerate() {
+        let _ = writeln!(text, "o side{index}");
+        for [x, y] in [[0.0, -1.0], [1.0, -1.0], [1.0, 1.0], [0.0, 1.0]] {
+            let x: f64 = x + side;
+            let _ = writeln!(text, "v {x} {y} {}", -0.7 * x.abs());
+        }
+        let first = 4 * index + 1;
+        let _ = writeln!(text, "f {first} {} {} {}", first + 1, first + 2, first + 3);
+    }
+    let scene = Scene::from_bytes("roof.obj", text.as_bytes()).expect("a roof");
+    let style = load(&format!(
+        r##"{{ "camera": {{ "orthographic": true, "position": [0.2, 0.3, 2], "bgcolor": "black", "zoom": 3 }}, "mapping": {{ "*": "c" }},
+          "shaders": [{{ "name": "c", "shader": "curvature", "properties": {{ {SHADES}, "curvature_source": "screen" }} }}] }}"##
+    ));
+    let mut engine = Engine::new(gpu, scene, style);
+    let image = engine.still(&Request { wide: true, ..Request::new([128, 96], 1) }).expect("a still");
+    let light = gpu::linear_from_srgb(128.0 / 255.0);
+    for (index, shade) in gpu::channel(&image, 0).into_iter().enumerate() {
+        assert!((shade - light).abs() < 1e-3, "pixel {index}: {shade} instead of {light}");
     }
 }
 

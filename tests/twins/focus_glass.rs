@@ -474,23 +474,46 @@ fn glass_out_of_focus_is_that_of_a_lens() {
     }
 }
 
+fn caffeine() -> Scene {
+    let file = find(MOLECULES, "caffeine").expect("a shipped molecule");
+    Scene::from_bytes(file.file, file.bytes).unwrap_or_else(|error| panic!("{error}"))
+}
+
+const FOCUS: &str = r#""focus": "center", "layers": [0, 0, 1, 1]"#;
+
+/// Atoms of glass whose opacity follows curvature, before such an effect.
+fn curved_glass(properties: &str, focus: &str) -> Style {
+    load(
+        &r##"{ "camera": { "bgcolor": "white", "position": [0.8, 0.7, 2.2] }, "geometry": { "atom": "vdw", "scale": 0.6 },
+                "mapping": { "atom": "glass", "connector": "plain", "post_effects": ["focus"] },
+                "shaders": [{ "name": "plain", "shader": "basic" },
+                  { "name": "glass", "shader": "curvature", "properties": { PROPERTIES } },
+                  { "name": "focus", "shader": "dofPost", "properties": { FOCUS, "blur": "90pt" } }] }"##
+            .replace("PROPERTIES", properties)
+            .replace("FOCUS", focus),
+    )
+}
+
 #[test]
 fn glass_by_curvature_is_that_of_a_lens() {
-    let caffeine = || {
-        let file = find(MOLECULES, "caffeine").expect("a shipped molecule");
-        Scene::from_bytes(file.file, file.bytes).unwrap_or_else(|error| panic!("{error}"))
-    };
-    let look = || {
-        load(
-            r##"{ "camera": { "bgcolor": "white", "position": [0.8, 0.7, 2.2] }, "geometry": { "atom": "vdw", "scale": 0.6 },
-                "mapping": { "atom": "glass", "connector": "plain", "post_effects": ["focus"] },
-                "shaders": [{ "name": "plain", "shader": "basic" }, { "name": "glass", "shader": "curvature" },
-                  { "name": "focus", "shader": "dofPost", "properties": { "focus": "center", "layers": [0, 0, 1, 1], "blur": "90pt" } }] }"##,
-        )
-    };
-    let Some(flip) = flip(&caffeine, &look, [128, 128], 256) else { return };
+    let Some(flip) = flip(&caffeine, &|| curved_glass("", FOCUS), [128, 128], 256) else { return };
     eprintln!("glass by curvature: FLIP {flip:.4}");
     assert!(flip < 0.05, "{flip}");
+}
+
+#[test]
+fn glass_by_curvature_of_neighbouring_pixels_is_blurred_alike() {
+    let Some(gpu) = gpu::device() else { return };
+    let still = |source: &str| {
+        let look = curved_glass(&format!(r#""curvature_source": "{source}""#), FOCUS);
+        let mut engine = Engine::new(gpu.clone(), caffeine(), look);
+        engine.still(&Request::new([256, 256], 4)).expect("a still")
+    };
+    let [surface, screen] = ["surface", "screen"].map(still);
+    let flip = compare(&surface, &screen, &Options::default()).expect("one size").metrics.flip;
+    eprintln!("glass by curvature of neighbouring pixels: FLIP {flip:.4}");
+    // What lies in the place of something else doubles it.
+    assert!(flip < 0.0015, "{flip}");
 }
 
 #[test]
