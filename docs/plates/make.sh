@@ -166,6 +166,43 @@ sed 's/, "mapping": [^]]*\] }//' "$work/focus.json" > "$work/sharp.json"
 "$restyle" render gearbox -s "$work/focus.json" -o "$work/focus_2.png" --size 480x360 2>/dev/null
 convert "$work"/focus_{1,2}.png +append -strip +dither -colors 255 png8:glass_focus.png
 
+# Glass beside what is opaque: with lines, with ambient occlusion, without a background (here over white and over black), each drawn by the
+# adapter and by the reference renderer.
+glass_beside() { # NAME SCENE CAMERA GLASS SHADER PROPERTIES EFFECTS
+  cat > "$work/$1.json" <<JSON
+{ "camera": { "bgcolor": "#dfe4ea", $3 }, "geometry": { "atom": "vdw", "scale": 0.5, "bond_radius": "0.2A" },
+  "mapping": { "*": "solid", "$4": "glass", "post_effects": [$7] },
+  "shaders": [ { "name": "solid", "shader": "basic", "properties": { "smoothness": 0.2, "metallic": 0 } },
+    { "name": "glass", "shader": "$5", "properties": { "smoothness": 0.5, $6 } },
+    { "name": "ao", "shader": "ssaoPost" },
+    { "name": "lines", "shader": "outlinePost", "properties": { "silhouette_width": "8pt", "crease_width": 0 } } ],
+  "lights": [ { "type": "directional", "position": [-1, 2, 2] }, { "type": "ambient", "intensity": 0.6 } ] }
+JSON
+}
+curved='"opacity_transfer": "glass", "color_transfer": "fig6a", "contour_width": "2pt"'
+for scene in gearbox caffeine; do
+  case $scene in
+    gearbox) camera='"zoom": 2, "target": [-0.1, -0.1, 0]' glass='mesh[part=*ousing*]' ;;
+    caffeine) camera='"zoom": 1' glass='atom[element=C]' ;;
+  esac
+  glass_beside lined "$scene" "$camera" "$glass" curvature "$curved" '"lines"'
+  glass_beside dim "$scene" "$camera" "$glass" basic '"opacity": 0.35' '"ao"'
+  glass_beside clear "$scene" "$camera" "$glass" curvature "$curved" '"ao", "lines"'
+  for renderer in gpu reference; do
+    for kind in lined dim clear; do
+      picture="$work/beside_${kind}_$renderer.png"
+      without=()
+      [ $kind = clear ] && without=(--transparent)
+      "$restyle" render "$scene" -s "$work/$kind.json" -o "$picture" --size 150x150 --renderer $renderer "${without[@]}" 2>/dev/null
+    done
+    for ground in white black; do
+      convert "$work/beside_clear_$renderer.png" -background $ground -flatten "$work/beside_${ground}_$renderer.png"
+    done
+    convert "$work"/beside_{lined,dim,white,black}_$renderer.png +append "$work/beside_${scene}_$renderer.png"
+  done
+done
+convert "$work"/beside_{gearbox,caffeine}_{gpu,reference}.png -append -strip +dither -colors 255 png8:glass_together.png
+
 # Scenes that are hard for methods of transparency, as `measure failures` draws them: the reference, the lists, the k-buffer.
 "$restyle" measure failures -o "$work/measured" >/dev/null 2>&1
 scene=0

@@ -10,6 +10,7 @@ pub mod chart;
 mod date;
 pub mod experiment;
 pub mod experiments;
+mod forms;
 mod front;
 pub mod hard;
 pub mod metrics;

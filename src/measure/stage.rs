@@ -9,7 +9,7 @@ use super::experiment::{MeasureError, Subject, Truth};
 use super::run::PassTimes;
 use crate::config::{self, Catalog, Source, Style};
 use crate::engine::exact::Exact;
-use crate::engine::{self, BkbForm, EffectForm, Engine, Gpu, GpuError, Request, ShadowQuality};
+use crate::engine::{self, BkbForm, BkbWords, EffectForm, Engine, Gpu, GpuError, Request, ShadowQuality};
 use crate::scene::{Image, Scene};
 use crate::shipped::{self, SCENES, Shipped};
 
@@ -153,6 +153,14 @@ impl GpuFrame {
             let ms = engine.draw(&self.request, true, &mut |_| ControlFlow::Continue(()))?;
             Ok((ms, engine.pass_times().clone()))
         })
+    }
+
+    /// The bucketed k-buffer of the frame; none where the style asks for no such method or it is drawn in bands.
+    ///
+    /// # Errors
+    /// [`MeasureError`] where it cannot be drawn.
+    pub fn bkb_words(&self) -> Result<Option<BkbWords>, MeasureError> {
+        self.warm(|engine| engine.bkb_words(&self.request))
     }
 }
 

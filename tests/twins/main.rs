@@ -10,6 +10,7 @@ mod failures;
 mod focus;
 mod focus_glass;
 mod furnace;
+mod glass_together;
 mod gpu;
 mod impostors;
 mod layers;

@@ -8,12 +8,12 @@ use serde_json::json;
 
 use crate::engine::{Engine, GpuError, Request};
 use crate::measure::experiment::{
-    Case, ChartKind, Entry, ErrorKind, Experiment, Judge, MeasureError, Setup, Truth, settings,
+    Case, ChartKind, Entry, ErrorKind, Experiment, Judge, MeasureError, Setup, Subject, Truth, settings,
 };
+use crate::measure::forms::{FORMS, Form, Seen};
 use crate::measure::page::short;
-use crate::measure::run::Row;
-use crate::measure::sheet::sheet;
-use crate::measure::stage::{Look, Stage, device, scene};
+use crate::measure::run::{PassTimes, Row};
+use crate::measure::stage::{GpuFrame, Look, Stage, device};
 use crate::scene::{Camera, Image, Pixels, Scene, linear_from_srgb, srgb_from_linear};
 
 const SIZES: [u32; 1] = [256];
@@ -22,174 +22,21 @@ const ZOOMS: [f64; 2] = [1.0, 2.0];
 
 /// Pixels from a silhouette within which curvature is judged apart.
 const BAND_PX: i64 = 3;
-/// Steps along a ray in which a surface is looked for, and halvings that then find its place.
-const STEPS: u32 = 1500;
-const HALVINGS: u32 = 60;
-/// Step of differences of second order, in scene units: their error is below a millionth.
-const STEP: f64 = 1e-3;
 /// Linear light of what is flat; what is curved most has none, or twice as much.
 const GREY: f64 = 0.215_860_500_113_898_27;
 
+/// Bits of each coordinate of a normal of a mesh, as it is stored.
+const STORED_BITS: u32 = 16;
+/// Fewer, for how much the storage has to do with the error.
+const FEWER_BITS: [u32; 1] = [12];
+const FEWER_BITS_THOROUGH: [u32; 2] = [14, 12];
+
 /// Figures: error of the sum of the principal curvatures, away from silhouettes and beside them, over the root mean square of the length of
-/// both; and the share of pixels on whose sign it errs.
+/// both; the share of pixels on whose sign it errs; and the factor by which what is found is nearest to what is due.
 const ERROR: &str = "error over the curvature, RMS";
-const BAND: &str = "error within 3 px of silhouettes";
+const BAND: &str = "error within 3 px of silhouettes and ends";
 const SIGNS: &str = "wrong signs, %";
-
-/// A shape of which every point is known.
-struct Form {
-    name: &'static str,
-    file: &'static str,
-    /// Below 0 within, above outside, 0 on the surface.
-    field: fn(DVec3) -> f64,
-    /// Where the surface ends.
-    is_there: fn(DVec3) -> bool,
-    text: fn() -> String,
-    camera: &'static str,
-    zoom: f64,
-}
-
-const FORMS: [Form; 5] = [
-    Form {
-        name: "sphere",
-        file: "sphere.xyz",
-        field: |p| p.length() - 1.0,
-        is_there: |_| true,
-        text: || "1\n\nC 0 0 0\n".to_owned(),
-        camera: r#""position": [0.4, 0.5, 3]"#,
-        zoom: 1.0,
-    },
-    Form {
-        name: "cylinder",
-        file: "cylinder.obj",
-        field: |p| p.x.hypot(p.y) - 0.5,
-        is_there: |p| p.z.abs() < 3.0,
-        text: || {
-            sheet([400, 8], |u, v| {
-                let out = around(u);
-                (0.5 * out + DVec3::Z * (6.0 * v - 3.0), out)
-            })
-        },
-        camera: r#""position": [3, 2, 1.2]"#,
-        zoom: 3.0,
-    },
-    Form {
-        name: "torus",
-        file: "torus.obj",
-        field: |p| (p.x.hypot(p.y) - 1.0).hypot(p.z) - 0.4,
-        is_there: |_| true,
-        text: || {
-            sheet([360, 180], |u, v| {
-                let (out, tube) = (around(u), around(v));
-                let normal = out * tube.x + DVec3::Z * tube.y;
-                (out + 0.4 * normal, normal)
-            })
-        },
-        camera: r#""position": [0.8, -1.2, 2.4]"#,
-        zoom: 1.0,
-    },
-    Form {
-        name: "ellipsoid",
-        file: "ellipsoid.obj",
-        field: |p| (p / AXES).length_squared() - 1.0,
-        is_there: |_| true,
-        text: || {
-            sheet([360, 180], |u, v| {
-                let (out, up) = (around(u), around(0.5 * v - 0.25));
-                let ball = out * up.x + DVec3::Z * up.y;
-                (ball * AXES, (ball / AXES).normalize())
-            })
-        },
-        camera: r#""position": [1.2, 0.8, 2]"#,
-        zoom: 1.0,
-    },
-    Form {
-        name: "saddle",
-        file: "saddle.obj",
-        field: |p| p.z - 0.5 * (p.x * p.x - p.y * p.y),
-        is_there: |p| p.x.abs() < 1.0 && p.y.abs() < 1.0,
-        text: || {
-            sheet([250, 250], |u, v| {
-                let (x, y) = (2.0 * u - 1.0, 2.0 * v - 1.0);
-                (DVec3::new(x, y, 0.5 * (x * x - y * y)), DVec3::new(-x, y, 1.0).normalize())
-            })
-        },
-        camera: r#""position": [1, -1.4, 2.2]"#,
-        zoom: 1.0,
-    },
-];
-
-/// Of the ellipsoid.
-const AXES: DVec3 = DVec3::new(1.0, 0.7, 0.5);
-
-/// A point of the unit circle, by its share of a turn.
-fn around(turns: f64) -> DVec3 {
-    let (sin, cos) = (turns * std::f64::consts::TAU).sin_cos();
-    DVec3::new(cos, sin, 0.0)
-}
-
-/// A point that a pixel sees.
-#[derive(Clone, Copy)]
-struct Seen {
-    point: DVec3,
-    /// Sum of the principal curvatures, and of their squares.
-    kappa: f64,
-    squares: f64,
-}
-
-impl Form {
-    fn gradient(&self, p: DVec3) -> DVec3 {
-        let along = |axis: DVec3| ((self.field)(p + STEP * axis) - (self.field)(p - STEP * axis)) / (2.0 * STEP);
-        DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z))
-    }
-
-    /// Sum of the principal curvatures where the surface is seen along a direction, negative where it is convex, and the sum of their
-    /// squares: the traces of the change of its unit normals, which the gradients beside it give, and of that change squared.
-    fn curvatures(&self, p: DVec3, direction: DVec3) -> [f64; 2] {
-        let normal = |p: DVec3| self.gradient(p).normalize();
-        let along = |axis: DVec3| (normal(p + STEP * axis) - normal(p - STEP * axis)) / (2.0 * STEP);
-        let change = DMat3::from_cols(along(DVec3::X), along(DVec3::Y), along(DVec3::Z));
-        let trace = |of: DMat3| of.x_axis.x + of.y_axis.y + of.z_axis.z;
-        let turned = if normal(p).dot(direction) > 0.0 { 1.0 } else { -1.0 };
-        [turned * trace(change), trace(change * change)]
-    }
-
-    /// The first point of the surface along a ray.
-    fn first(&self, origin: DVec3, direction: DVec3, [start, end]: [f64; 2]) -> Option<Seen> {
-        let at = |t: f64| origin + t * direction;
-        let step = (end - start) / f64::from(STEPS);
-        let mut before = (self.field)(at(start));
-        for index in 1..=STEPS {
-            let t = start + f64::from(index) * step;
-            let here = (self.field)(at(t));
-            if before * here <= 0.0 {
-                let (mut low, mut high) = (t - step, t);
-                for _ in 0..HALVINGS {
-                    let middle = 0.5 * (low + high);
-                    if (self.field)(at(middle)) * before > 0.0 {
-                        low = middle;
-                    } else {
-                        high = middle;
-                    }
-                }
-                let point = at(0.5 * (low + high));
-                if (self.is_there)(point) {
-                    let [kappa, squares] = self.curvatures(point, direction);
-                    return Some(Seen { point, kappa, squares });
-                }
-            }
-            before = here;
-        }
-        None
-    }
-
-    /// Whether the surface goes on between two points of it.
-    fn goes_on(&self, a: DVec3, b: DVec3) -> bool {
-        let middle = 0.5 * (a + b);
-        let off = (self.field)(middle).abs() / self.gradient(middle).length().max(f64::MIN_POSITIVE);
-        off < 0.1 * a.distance(b)
-    }
-}
+const FACTOR: &str = "found over due";
 
 /// What a camera sees of a form.
 struct Map {
@@ -200,7 +47,8 @@ struct Map {
 }
 
 impl Map {
-    fn new(form: &Form, camera: &Camera, size: [u32; 2], radius: f64) -> Map {
+    /// `zero` is where the scene's is in its file; beyond twice the radius there is nothing.
+    fn new(form: &Form, camera: &Camera, size: [u32; 2], radius: f64, zero: DVec3) -> Map {
         let world = camera.view_from_world.as_dmat4().inverse();
         let turn = DMat3::from_mat4(world);
         let eye = world.w_axis.truncate();
@@ -210,7 +58,7 @@ impl Map {
             let place =
                 [(x, size[0]), (y, size[1])].map(|(at, side)| 2.0 * (f64::from(at) + 0.5) / f64::from(side) - 1.0);
             let direction = (turn * DVec3::new(place[0] * half.x, -place[1] * half.y, -1.0)).normalize();
-            form.first(eye, direction, range)
+            form.first(form.sight(eye, direction, range, zero))
         };
         let seen: Vec<Option<Seen>> =
             (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y))).map(|(x, y)| pixel(x, y)).collect();
@@ -222,7 +70,7 @@ impl Map {
         let mut is_beside = vec![false; seen.len()];
         for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
             let ends = |dx: i64, dy: i64| match (at(x, y), at(x + dx, y + dy)) {
-                (Some(a), Some(b)) => !form.goes_on(a.point, b.point),
+                (Some(a), Some(b)) => !form.goes_on(&a, &b),
                 // Beyond the picture nothing ends.
                 (a, b) => a.is_some() != b.is_some() && x + dx < width && y + dy < height,
             };
@@ -239,20 +87,16 @@ impl Map {
         Map { size, seen, is_beside }
     }
 
-    /// The picture that exact curvature gives, in 16 bits.
+    /// The picture that exact curvature gives.
     fn image(&self, scale: f64) -> Image {
-        let shade = |seen: &Option<Seen>| {
-            let light = seen.map_or(0.0, |seen| GREY * (1.0 + (scale * seen.kappa).tanh()));
-            let value = (srgb_from_linear(light) * 65535.0).round() as u16;
-            [value, value, value, u16::MAX]
-        };
-        Image { size: self.size, pixels: Pixels::U16(self.seen.iter().flat_map(shade).collect()), opaque: true }
+        shades(self.size, self.seen.iter().map(|seen| seen.map(|seen| (scale * seen.kappa).tanh())))
     }
 
     /// How far the curvature that a picture tells by its shades is from this.
     fn judge(self: Rc<Self>, scale: f64) -> Judge {
         Rc::new(move |_, picture| {
             let [mut off, mut band, mut all] = [0.0, 0.0, 0.0];
+            let [mut along, mut square] = [0.0, 0.0];
             let (mut wrong, mut signed, mut count) = (0usize, 0usize, [0usize; 2]);
             let largest = self.seen.iter().flatten().map(|seen| seen.kappa.abs()).fold(0.0, f64::max);
             for (index, seen) in self.seen.iter().enumerate() {
@@ -269,6 +113,8 @@ impl Map {
                 }
                 off += error;
                 all += seen.squares;
+                along += kappa * seen.kappa;
+                square += seen.kappa * seen.kappa;
                 count[0] += 1;
                 if seen.kappa.abs() > 0.05 * largest {
                     signed += 1;
@@ -280,26 +126,102 @@ impl Map {
                 (ERROR, (off / count[0].max(1) as f64 / mean).sqrt()),
                 (BAND, (band / count[1].max(1) as f64 / mean).sqrt()),
                 (SIGNS, 100.0 * wrong as f64 / signed.max(1) as f64),
+                (FACTOR, along / square),
             ]
         })
     }
 }
 
-/// Where curvature comes from: what a style says, and the method of transparency.
-const SOURCES: [(&str, &str, &str); 3] =
-    [("surface", "surface", "packed"), ("screen", "screen", "packed"), ("bkb", "auto", "bkb")];
+/// A picture in 16 bits of curvature read by tanh, -1 to 1; black where nothing is.
+fn shades(size: [u32; 2], read: impl Iterator<Item = Option<f64>>) -> Image {
+    let shade = |read: Option<f64>| {
+        let light = read.map_or(0.0, |read| GREY * (1.0 + read));
+        let value = (srgb_from_linear(light) * 65535.0).round() as u16;
+        [value, value, value, u16::MAX]
+    };
+    Image { size, pixels: Pixels::U16(read.flat_map(shade).collect()), opaque: true }
+}
 
-fn look(form: &Form, (name, source, method): (&str, &str, &str), zoom: f64) -> Result<Look, MeasureError> {
+/// Where curvature comes from.
+#[derive(Debug, Clone, Copy)]
+struct Origin {
+    method: &'static str,
+    /// What a style says of it.
+    source: &'static str,
+    /// The style's method of transparency.
+    layers: &'static str,
+    /// Whether it is read from the k-buffer before it becomes a colour.
+    is_read_out: bool,
+}
+
+const SURFACE: Origin = Origin { method: "surface", source: "surface", layers: "packed", is_read_out: false };
+const SCREEN: Origin = Origin { method: "screen", source: "screen", layers: "packed", is_read_out: false };
+const BKB: Origin = Origin { method: "bkb", source: "auto", layers: "bkb", is_read_out: false };
+const READ_OUT: Origin = Origin { method: "bkb before colours", is_read_out: true, ..BKB };
+
+/// The k-buffer's own curvature as a picture.
+struct ReadOut(GpuFrame);
+
+impl Subject for ReadOut {
+    fn frame_ms(&mut self) -> Result<f64, MeasureError> {
+        self.0.frame_ms()
+    }
+
+    fn pass_ms(&mut self) -> Result<PassTimes, MeasureError> {
+        self.0.pass_ms()
+    }
+
+    fn bytes(&self) -> u64 {
+        self.0.bytes()
+    }
+
+    fn picture(&mut self) -> Result<Image, MeasureError> {
+        let words = self.0.bkb_words()?;
+        let words = words.ok_or_else(|| MeasureError::Content("the k-buffer is drawn in bands".to_owned()))?;
+        // Keys have 16 bits of depth at their lower end, and are all 1 where nothing is.
+        let nearest = |(keys, kappa): (&[u32], &[f32])| {
+            let stored = keys.iter().zip(kappa).filter(|(key, _)| **key != u32::MAX);
+            stored.min_by_key(|(key, _)| **key & 0xffff).map(|(_, kappa)| f64::from(*kappa))
+        };
+        let k = words.band.k as usize;
+        Ok(shades(self.0.request.size, words.z.chunks(k).zip(words.kappa.chunks(k)).map(nearest)))
+    }
+}
+
+/// The normals of a scene's meshes rounded to so many bits a coordinate, before anything asks how they bend.
+fn with_normals(mut scene: Scene, bits: u32) -> Scene {
+    let step = 1 << (STORED_BITS - bits);
+    let rounded = |coordinate: u32| ((coordinate + step / 2) / step * step).min(u32::from(u16::MAX) - 1);
+    for shape in &mut scene.assembly.shapes {
+        for normal in &mut shape.normals {
+            *normal = rounded(*normal & 0xffff) | rounded(*normal >> 16) << 16;
+        }
+    }
+    scene
+}
+
+fn look(form: &Form, origin: Origin, zoom: f64) -> Result<Look, MeasureError> {
     let (camera, zoom_by) = (form.camera, form.zoom * zoom);
+    let Origin { method, source, layers, .. } = origin;
     let text = format!(
         r##"{{ "camera": {{ "bgcolor": "black", {camera}, "zoom": {zoom_by} }}, "geometry": {{ "atom": "1A", "scale": 1 }},
-              "transparency": {{ "method": "{method}", "k": 8 }}, "mapping": {{ "*": "shade" }},
+              "transparency": {{ "method": "{layers}", "k": 8 }}, "mapping": {{ "*": "shade" }},
               "shaders": [{{ "name": "shade", "shader": "curvature", "properties": {{ "base_color": "#808080", "shading": "unlit",
                 "contour_width": "0pt", "gain": 0.4, "opacity_transfer": [[0, 1], [1, 1]],
                 "color_transfer": [[-1, 0, 0, 0], [1, 2, 2, 2]], "curvature_source": "{source}" }} }}] }}"##
     );
-    Look::of_text(&format!("{} {name} {zoom}", form.name), &text)
+    Look::of_text(&format!("{} {method} {zoom}", form.name), &text)
 }
+
+/// How many bits a coordinate of a row's normals has.
+fn bits(row: &Row) -> u32 {
+    row.entry.settings.get(BITS).and_then(|bits| u32::try_from(bits.as_u64()?).ok()).unwrap_or(STORED_BITS)
+}
+
+/// The setting of that name.
+const BITS: &str = "normal bits";
+/// The form that is a part as CAD programs write them, and no smooth surface.
+const PART: &str = "bracket";
 
 /// The experiment.
 pub struct Curvature;
@@ -321,34 +243,68 @@ impl Experiment for Curvature {
     fn conditions(&self, _: &Setup) -> Vec<String> {
         vec![
             format!(
-                "The truth are five implicit surfaces, crossed along the ray of each pixel's centre in double precision; curvature is the divergence of \
-                 their normals, and errors are over the root of the sum of both squares. Pictures tell curvature by flat shades of 16 bits, one sample a pixel. Within {BAND_PX} px of silhouettes and ends it is \
-                 judged apart. The sphere is one to the device, the others are meshes of 6,400 to 129,600 triangles with exact normals at their vertices."
+                "The truth are five implicit surfaces and a part of planes and cylinders, crossed along the ray of each pixel's centre in double \
+                 precision; curvature is the divergence of their normals, and errors are over the root of the sum of both squares. Pictures tell \
+                 curvature by flat shades of 16 bits, one sample a pixel. Within {BAND_PX} px of silhouettes, and of ends of the surface or of a face, \
+                 it is judged apart; a pixel that the device leaves empty there counts as the sharpest bend. The sphere is one to the device, four others are meshes of 6,400 to 129,600 triangles with exact normals at their \
+                 vertices. The part is the shipped bracket as its file has it: 992 triangles, 32 to a full turn of its bends and 20 to that of its \
+                 smallest holes, normals of three decimals."
             ),
-            "Signs are judged where the curvature is above a twentieth of its largest. The bucketed k-buffer keeps normals of 15 + 15 + 2 bits, and \
-             colours of 8 bits, which is as much as its shades can tell; where a neighbour is missing it says -1."
-                .to_owned(),
+            format!(
+                "Signs are judged where the curvature is above a twentieth of its largest. Normals of meshes are stored in {STORED_BITS} + \
+                 {STORED_BITS} bits; rows of fewer have them rounded further. The bucketed k-buffer keeps normals of 15 + 15 + 2 bits, and colours \
+                 of 8 bits, which is as much as its shades can tell; rows before colours are what it found itself. Where a neighbour is missing it \
+                 says -1."
+            ),
         ]
     }
 
     fn says(&self, rows: &[Row]) -> String {
-        let most = |method: &'static str, name: &'static str| {
-            let of = rows.iter().filter(|row| row.entry.method == method && row.entry.size[0] >= SIZES[0]);
+        let rows: Vec<&Row> = rows.iter().filter(|row| row.entry.size[0] >= SIZES[0]).collect();
+        let of = |origin: Origin, is_part: bool| {
+            let of = move |row: &&&Row| row.entry.method == origin.method && (row.entry.scene == PART) == is_part;
+            rows.iter().filter(of).copied().collect::<Vec<&Row>>()
+        };
+        let most = |rows: &[&Row], bits_due: u32, name: &'static str| {
+            let of = rows.iter().filter(|row| bits(row) == bits_due);
             short(of.filter_map(|row| row.figure(name)).fold(0.0, f64::max))
         };
+        let three = |is_part: bool, name: &'static str| {
+            let [surface, screen, bkb] =
+                [SURFACE, SCREEN, BKB].map(|origin| most(&of(origin, is_part), STORED_BITS, name));
+            format!("{surface}, {screen} and {bkb}")
+        };
+        let zoomed = [SURFACE, SCREEN, BKB].map(|origin| {
+            let of = of(origin, false);
+            let alike = |a: &Row, b: &Row| a.entry.scene == b.entry.scene && a.entry.size == b.entry.size;
+            let pairs = of
+                .iter()
+                .flat_map(|a| of.iter().filter(move |b| alike(a, b) && bits(a) == bits(b)).map(move |b| (a, b)));
+            let apart = pairs.filter_map(|(a, b)| Some(a.figure(FACTOR)? - b.figure(FACTOR)?));
+            short(100.0 * apart.fold(0.0, f64::max))
+        });
+        let by_bits = |origin: Origin| {
+            let of = of(origin, false);
+            let [stored, few] = [STORED_BITS, FEWER_BITS[0]].map(|bits| most(&of, bits, ERROR));
+            format!("{stored} and {few}")
+        };
         format!(
-            "From {} pixels on the error is at most {} of the surface itself, {} from neighbouring pixels and {} in the bucketed k-buffer, as a share of \
-             the curvature; next to silhouettes {}, {} and {}. Signs are wrong on at most {}, {} and {} % of the pixels.",
+            "From {} pixels on the error of the surface itself, from neighbouring pixels and in the bucketed k-buffer is at most {} of the \
+             curvature, next to silhouettes {}; signs are wrong on at most {} % of the pixels, and twice the zoom changes what is found by {}, {} \
+             and {} %. On the bracket, whose bends are coarse, the errors are {}. With normals of {STORED_BITS} and {} bits a coordinate the \
+             surface itself errs by {}, neighbouring pixels by {}; the k-buffer before its colours by {}.",
             SIZES[0],
-            most("surface", ERROR),
-            most("screen", ERROR),
-            most("bkb", ERROR),
-            most("surface", BAND),
-            most("screen", BAND),
-            most("bkb", BAND),
-            most("surface", SIGNS),
-            most("screen", SIGNS),
-            most("bkb", SIGNS),
+            three(false, ERROR),
+            three(false, BAND),
+            three(false, SIGNS),
+            zoomed[0],
+            zoomed[1],
+            zoomed[2],
+            three(true, ERROR),
+            FEWER_BITS[0],
+            by_bits(SURFACE),
+            by_bits(SCREEN),
+            most(&of(READ_OUT, false), STORED_BITS, ERROR),
         )
     }
 
@@ -361,37 +317,63 @@ impl Experiment for Curvature {
         };
         let mut cases = Vec::new();
         for form in &FORMS {
-            let model: Scene = scene(form.file, (form.text)().as_bytes())?;
-            let stage = Stage::new(gpu, model.clone());
+            let model = form.scene()?;
+            let is_mesh = !model.assembly.is_empty();
+            let radius = if is_mesh { f64::from(model.bounding_sphere().radius) } else { 1.0 };
+            let coarser = match setup.thorough {
+                _ if !is_mesh || form.name == PART => &[],
+                false => &FEWER_BITS[..],
+                true => &FEWER_BITS_THOROUGH,
+            };
+            let scenes = [STORED_BITS].iter().chain(coarser).map(|&bits| {
+                let scene = with_normals(model.clone(), bits);
+                (bits, Stage::new(gpu, scene.clone()), scene)
+            });
+            let scenes: Vec<_> = scenes.collect();
             for (&side, zoom) in sizes.iter().flat_map(|side| ZOOMS.map(|zoom| (side, zoom))) {
                 let size = [side, side];
                 let request = Request { wide: true, ..Request::new(size, 1) };
-                let mut engine = Engine::new(gpu.clone(), model.clone(), look(form, SOURCES[0], zoom)?.style());
-                engine.draw(&request, false, &mut |_| ControlFlow::Continue(()))?;
-                let seen = engine.camera(size).zip(engine.curvature_scale());
-                let (camera, scale) = seen.ok_or(GpuError::NothingToDraw)?;
-                let scale = 0.4 * scale;
-                let radius = f64::from(model.bounding_sphere().radius).max(1.0);
-                let map = Rc::new(Map::new(form, &camera, size, radius));
-                let image = map.image(scale);
-                let truth = Truth::new(move |_| Ok(image.clone()));
-                for source in SOURCES {
-                    let (method, ..) = source;
-                    cases.push(Case {
-                        entry: Entry {
-                            scene: form.name.to_owned(),
-                            method: method.to_owned(),
-                            settings: settings(json!({ "zoom": zoom })),
-                            series: method.to_owned(),
-                            point: format!("{side} {zoom}"),
-                            extent: f64::from(side),
-                            is_published: method == "bkb",
-                            size,
-                        },
-                        subject: Box::new(stage.frame(&look(form, source, zoom)?, request)),
-                        truth: Some(Rc::clone(&truth)),
-                        judge: Some(Rc::clone(&map).judge(scale)),
-                    });
+                let mut map: Option<Rc<Map>> = None;
+                for (bits, stage, scene) in &scenes {
+                    let origins = match *bits {
+                        STORED_BITS => &[SURFACE, SCREEN, BKB, READ_OUT][..],
+                        _ if zoom == ZOOMS[0] => &[SURFACE, SCREEN],
+                        _ => continue,
+                    };
+                    let mut engine = Engine::new(gpu.clone(), scene.clone(), look(form, SURFACE, zoom)?.style());
+                    engine.draw(&request, false, &mut |_| ControlFlow::Continue(()))?;
+                    let seen = engine.camera(size).zip(engine.curvature_scale());
+                    let (camera, scale) = seen.ok_or(GpuError::NothingToDraw)?;
+                    let scale = 0.4 * scale;
+                    let map = map.get_or_insert_with(|| Rc::new(Map::new(form, &camera, size, radius, model.origin())));
+                    let image = map.image(scale);
+                    let truth = Truth::new(move |_| Ok(image.clone()));
+                    for origin in origins {
+                        let series = match *bits {
+                            STORED_BITS => origin.method.to_owned(),
+                            bits => format!("{}, {bits} + {bits} bits", origin.method),
+                        };
+                        let settings = match is_mesh {
+                            true => settings(json!({ "zoom": zoom, BITS: bits })),
+                            false => settings(json!({ "zoom": zoom })),
+                        };
+                        let frame = stage.frame(&look(form, *origin, zoom)?, request);
+                        cases.push(Case {
+                            entry: Entry {
+                                scene: form.name.to_owned(),
+                                method: origin.method.to_owned(),
+                                settings,
+                                series,
+                                point: format!("{side} {zoom}"),
+                                extent: f64::from(side),
+                                is_published: origin.layers == BKB.layers,
+                                size,
+                            },
+                            subject: if origin.is_read_out { Box::new(ReadOut(frame)) } else { Box::new(frame) },
+                            truth: Some(Rc::clone(&truth)),
+                            judge: Some(Rc::clone(map).judge(scale)),
+                        });
+                    }
                 }
             }
         }
@@ -402,30 +384,34 @@ impl Experiment for Curvature {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::mesh::unpack_normal;
 
     #[test]
-    fn scenes_and_styles_load() {
+    fn styles_load() {
         for form in &FORMS {
-            scene(form.file, (form.text)().as_bytes()).unwrap_or_else(|error| panic!("{}: {error}", form.name));
-            for source in SOURCES {
-                look(form, source, 2.0).unwrap_or_else(|error| panic!("{}: {error}", form.name));
+            for origin in [SURFACE, SCREEN, BKB, READ_OUT] {
+                look(form, origin, 2.0).unwrap_or_else(|error| panic!("{}: {error}", form.name));
             }
         }
     }
 
     #[test]
-    fn curvature_of_formulas_is_known() {
-        let [sphere, cylinder, torus, ..] = &FORMS;
-        for (form, point, due) in [
-            (sphere, DVec3::new(0.0, 0.6, 0.8), -2.0),
-            (cylinder, DVec3::new(0.3, 0.4, 1.0), -2.0),
-            (torus, DVec3::new(1.4, 0.0, 0.0), -1.0 / 0.4 - 1.0 / 1.4),
-            (torus, DVec3::new(0.6, 0.0, 0.0), -1.0 / 0.4 + 1.0 / 0.6),
-        ] {
-            let [kappa, squares] = form.curvatures(point, -form.gradient(point));
-            assert!((kappa - due).abs() < 1e-4, "{}: {kappa} for {due}", form.name);
-            assert!((form.curvatures(point, form.gradient(point))[0] + due).abs() < 1e-4, "from within");
-            assert!(squares >= 0.5 * kappa * kappa - 1e-6, "{}: {squares}", form.name);
+    fn normals_of_fewer_bits_are_off_by_as_much_more() {
+        let form = FORMS.iter().find(|form| form.name == "torus").expect("a torus");
+        let scene = form.scene().expect("a torus");
+        let normals =
+            |scene: &Scene| scene.assembly.shapes[0].normals.iter().map(|n| unpack_normal(*n)).collect::<Vec<_>>();
+        let exact = normals(&scene);
+        for (bits, most) in [(16, 0.0), (14, 2.0), (12, 8.0)] {
+            let off = exact
+                .iter()
+                .zip(normals(&with_normals(scene.clone(), bits)))
+                .map(|(a, b)| a.distance(b))
+                .fold(0.0, f32::max);
+            // Two coordinates are off by half a step of many, which a normal in the middle of a face of the octahedron is by three times the
+            // root of two as much.
+            let step = 2.0 / 65_534.0;
+            assert!(off <= 4.25 * most * step && off >= 0.8 * most * step, "{bits} bits: {off}");
         }
     }
 }
