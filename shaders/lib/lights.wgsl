@@ -42,7 +42,9 @@ fn light_count() -> u32 {
     return LIGHT_COUNT;
 }
 
+// Whether there is any is a constant of the pipeline, so that nothing is found in vain for it.
 fn ambient_light() -> vec3<f32> {
+    if !AMBIENT { return vec3<f32>(0.0); }
     return lights.ambient;
 }
 

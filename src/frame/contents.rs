@@ -137,6 +137,7 @@ impl Needs {
             hulls: materials.has_hulls(),
             lights: 0,
             point_lights: false,
+            ambient: false,
             shadows: false,
             soft_taps: 0,
             shadow_filter: ShadowFilter::default(),

@@ -186,6 +186,7 @@ impl Plan {
         let shade = ShadeKey {
             lights: input.lighting.lights.len().min(MAX_LIGHTS) as u32,
             point_lights: input.lighting.lights.iter().any(|light| matches!(light.place, LightPlace::Point { .. })),
+            ambient: input.lighting.ambient != glam::Vec3::ZERO,
             shadows: shadowed,
             soft_taps: if shadowed { quality.soft_taps(samples) } else { 0 },
             shadow_filter: quality.filter,

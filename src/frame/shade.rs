@@ -50,6 +50,8 @@ pub struct ShadeKey {
     pub lights: u32,
     /// Whether one of them is a point light.
     pub point_lights: bool,
+    /// Whether there is ambient light.
+    pub ambient: bool,
     /// Whether a light casts shadows.
     pub shadows: bool,
     /// Taps of a soft shadow's filter, for one sample.
@@ -576,7 +578,7 @@ pub fn add_shading(module: &mut Module, key: &ShadeKey) {
     shadow_files.iter().for_each(|file| module.add(*file));
     let mut bindings = format!(
         "const ORTHOGRAPHIC: bool = {};\nconst ENCODE: bool = {};\nconst ATOMS: bool = {};\nconst CONNECTORS: bool = {};\nconst MESHES: bool = {};\nconst HULLS: bool = {};\n\
-         const CURVATURE: bool = {};\nconst SHADOWS: bool = {};\nconst LIGHT_COUNT: u32 = {}u;\nconst POINT_LIGHTS: bool = {};\n",
+         const CURVATURE: bool = {};\nconst SHADOWS: bool = {};\nconst LIGHT_COUNT: u32 = {}u;\nconst POINT_LIGHTS: bool = {};\nconst AMBIENT: bool = {};\n",
         key.orthographic,
         key.encode,
         key.atoms,
@@ -586,7 +588,8 @@ pub fn add_shading(module: &mut Module, key: &ShadeKey) {
         key.layers.is_some() && key.shaders.iter().any(|needs| SHADERS[needs.shader].stylises()),
         key.shadows,
         key.lights,
-        key.point_lights
+        key.point_lights,
+        key.ambient
     );
     if key.shadows {
         bindings.push_str(

@@ -179,7 +179,7 @@ fn collect(parsed: &naga::Module, ty: Handle<Type>, into: &mut BTreeSet<Handle<T
 }
 
 /// How many yes-or-no questions a [`ShadeKey`] answers, beside its list of shaders.
-const NUM_SWITCHES: u32 = 22;
+const NUM_SWITCHES: u32 = 23;
 
 /// Answers, one a bit, of which at most one differs from the rest.
 fn covering_switches() -> impl Iterator<Item = u32> {
@@ -253,6 +253,7 @@ fn shade_key(shaders: u32, switches: u32, features: u32) -> ShadeKey {
         hulls: on(4),
         lights: if on(5) { 8 } else { 0 },
         point_lights: on(6),
+        ambient: on(22),
         shadows: on(7),
         encode: on(8),
         soft_taps: if on(12) { 16 } else { 0 },
