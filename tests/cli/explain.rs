@@ -134,7 +134,7 @@ fn the_bucketed_k_buffer_is_told_with_its_bytes_and_bands() {
     // What follows sees nearest surfaces, of which lists have the ids.
     style(8, r#""outlinePost""#);
     let passes = passes(&folder, "caffeine -s s.json --size 90x70 --samples 1");
-    let lists = "layers_counted layers_room layers_written layers_blended layers_nearest";
+    let lists = "layers_counted layers_room layers_written layers_sorted layers_blended layers_nearest";
     assert!(names(&passes, true).starts_with(&format!("visibility shade {lists} {bkb} outline_seeds")));
     style(64, "");
     folder.run("render caffeine -s s.json --size 8192x16 --samples 1 --json").refused(3, "layers of three rows");
