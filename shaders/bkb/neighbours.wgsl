@@ -35,8 +35,7 @@ fn candidates(first: u32, shape: u32) -> vec2<u32> {
 fn most_like(first: u32, range: vec2<u32>, fragment: BkbFragment) -> u32 {
     var best = EMPTY;
     var least = 1e9;
-    for (var slot = range.x; slot <= range.y; slot++) {
-        if bkb_z[first + slot] == EMPTY { break; }
+    for (var slot = range.x; slot <= range.y && bkb_z[first + slot] != EMPTY; slot++) {
         let error = unlikeness(fragment, fragment_at(first, slot));
         if is_stored(first, slot) && error < least {
             least = error;

@@ -60,9 +60,8 @@ fn stylise(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let at = invocation.xy + vec2<u32>(0u, bkb.first_drawn);
     if at.x >= bkb.width || at.y >= bkb.end_drawn { return; }
     let first = first_slot(bkb, at);
-    for (var slot = 0u; slot < bkb.k; slot++) {
+    for (var slot = 0u; slot < bkb.k && bkb_z[first + slot] != EMPTY; slot++) {
         let key = bkb_z[first + slot];
-        if key == EMPTY { break; }
         // Kept by the first pass and not found by the second: it stays invisible.
         if is_stored(first, slot) { stylise_slot(at, first, slot, key >> 16u); }
     }
