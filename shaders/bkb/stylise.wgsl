@@ -1,8 +1,8 @@
 // Colour and opacity of each fragment by the curvature of its surface [Murray2016 §5]: kappa = tanh(k1 + k2), with the scene's radius
 // as the unit of length, negative where the surface is convex; -1 where a neighbour is missing.
 //
-// No loop is left from within another, nor skips a turn: while Mesa 22.3 compiles such a nest for its software adapter it writes to memory
-// that it has freed.
+// Here, in `neighbours.wgsl` and `query.wgsl` loops end at their heads alone and skip no turn: while Mesa 22.3 compiles a nest of others for
+// its software adapter it writes to memory that it has freed.
 
 @group(2) @binding(0) var<uniform> bkb: BkbBand;
 @group(2) @binding(1) var<storage, read_write> bkb_z: array<u32>;

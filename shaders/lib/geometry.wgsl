@@ -19,18 +19,26 @@ fn pixel_world(view: View, depth: f32) -> f32 {
     return view.pixel_view * select(depth, 1.0, ORTHOGRAPHIC);
 }
 
-// A unit vector as a point of an octahedron that is folded open, 16 bits a coordinate.
-fn pack_unit(v: vec3<f32>) -> u32 {
+// A unit vector as a point of an octahedron that is folded open, -1..1.
+fn fold_unit(v: vec3<f32>) -> vec2<f32> {
     let flat = v.xy / (abs(v.x) + abs(v.y) + abs(v.z));
     let signs = select(vec2<f32>(-1.0), vec2<f32>(1.0), flat >= vec2<f32>(0.0));
-    return pack2x16snorm(select(flat, (1.0 - abs(flat.yx)) * signs, v.z < 0.0));
+    return select(flat, (1.0 - abs(flat.yx)) * signs, v.z < 0.0);
 }
 
-fn unpack_unit(word: u32) -> vec3<f32> {
-    let flat = unpack2x16snorm(word);
+fn unfold_unit(flat: vec2<f32>) -> vec3<f32> {
     let z = 1.0 - abs(flat.x) - abs(flat.y);
     let signs = select(vec2<f32>(-1.0), vec2<f32>(1.0), flat >= vec2<f32>(0.0));
     return normalize(vec3<f32>(select(flat, (1.0 - abs(flat.yx)) * signs, z < 0.0), z));
+}
+
+// The same with 16 bits a coordinate.
+fn pack_unit(v: vec3<f32>) -> u32 {
+    return pack2x16snorm(fold_unit(v));
+}
+
+fn unpack_unit(word: u32) -> vec3<f32> {
+    return unfold_unit(unpack2x16snorm(word));
 }
 
 fn pack_geometry(g: Geometry) -> vec4<u32> {

@@ -91,7 +91,10 @@ mod tests {
         // The network of 32 begins with two of 16 and merges them: halves in order are all that is left to be merged.
         let [short, long] = [16, 32].map(comparisons);
         let half = |half: u32| long.iter().filter(move |[a, b]| a / 16 == half && b / 16 == half);
-        assert!(half(0).zip(&short).take(short.len()).all(|(a, b)| a == b));
+        for (index, first) in [0, 16].into_iter().enumerate() {
+            let due = short.iter().map(|[a, b]| [a + first, b + first]);
+            assert!(half(index as u32).take(short.len()).copied().eq(due), "half {index}");
+        }
         let ordered = |ones: u32| ((1u32 << ones) - 1) << (16 - ones);
         assert!((0..=16).flat_map(|a| (0..=16).map(move |b| [a, b])).all(|ones| {
             let [low, high] = ones.map(ordered);
