@@ -4,6 +4,13 @@
 
 // How far from its tangent plane a surface may be one pixel on, in widths of a pixel on it as it is seen: beyond, it is another sheet.
 const PLANE_REACH: f32 = 1.0;
+// Normals between the vertices of a mesh change by one slope within each triangle, which tells no more than one curvature for all of it. So
+// differences go over one and a half triangles, which takes the mean over some (ours): over no more pixels than these to each side, and
+// not across the triangle's own creases and borders.
+const GRAIN_SHARE: f32 = 0.75;
+const WIDEST_PX: f32 = 8.0;
+// Where both sides do not bend alike within this share of what they bend, a feature of the surface ends, and no mean is taken over it.
+const SAME_BEND: f32 = 0.15;
 
 // A list beside that of a pixel, and how far it is searched: fragments come from near to far, so that each begins where the one before
 // it ended.
@@ -12,11 +19,16 @@ struct Side {
     index: u32,
 }
 
+// The lists so many pixels before and after that of a pixel.
+struct Pair {
+    before: Side,
+    after: Side,
+    step_px: i32,
+}
+
 struct Neighbours {
-    left: Side,
-    right: Side,
-    above: Side,
-    below: Side,
+    beside: Pair,
+    above: Pair,
 }
 
 struct Beside {
@@ -32,12 +44,14 @@ fn side_at(at: vec2<i32>) -> Side {
     return Side(list_of(u32(pixel)), 0u);
 }
 
+// `along` is one pixel to the right or down.
+fn pair_at(at: vec2<i32>, along: vec2<i32>, step_px: i32) -> Pair {
+    return Pair(side_at(at - step_px * along), side_at(at + step_px * along), step_px);
+}
+
 fn neighbours_of(position_px: vec2<f32>) -> Neighbours {
     let at = vec2<i32>(position_px);
-    return Neighbours(
-        side_at(at - vec2<i32>(1, 0)), side_at(at + vec2<i32>(1, 0)),
-        side_at(at - vec2<i32>(0, 1)), side_at(at + vec2<i32>(0, 1)),
-    );
+    return Neighbours(pair_at(at, vec2<i32>(1, 0), 1), pair_at(at, vec2<i32>(0, 1), 1));
 }
 
 // The fragment of the same object in a list beside, where it is expected at depth `t`, at most `reach` from it.
@@ -65,34 +79,60 @@ fn beside(side: ptr<function, Side>, s: Surface, t: f32, reach: f32) -> Beside {
     return Beside(is_there, select(s.normal_view, normal_of_mark(best), is_there));
 }
 
+// The change of normals from before a fragment to after it, and over how many pixels that is. Normals of what is missing are those of the
+// fragment.
+struct Change {
+    normal: vec3<f32>,
+    steps_px: f32,
+    // Whether both sides are there and bend alike.
+    is_even: bool,
+}
+
+// `slope` is the change of depth for one pixel.
+fn change_over(pair: ptr<function, Pair>, at: vec2<i32>, along: vec2<i32>, step_px: i32, s: Surface, slope: f32) -> Change {
+    if (*pair).step_px != step_px { *pair = pair_at(at, along, step_px); }
+    let t = -s.position_view.z;
+    // A steep surface bends away from its plane in proportion.
+    let reach = PLANE_REACH * (pixel_world(view, t) + abs(slope));
+    let step = f32(step_px);
+    var before_side = (*pair).before;
+    let before = beside(&before_side, s, t - step * slope, reach);
+    (*pair).before = before_side;
+    var after_side = (*pair).after;
+    let after = beside(&after_side, s, t + step * slope, reach);
+    (*pair).after = after_side;
+    let change = after.normal - before.normal;
+    let uneven = after.normal + before.normal - 2.0 * s.normal_view;
+    return Change(
+        change,
+        step * f32(u32(before.is_there) + u32(after.is_there)),
+        before.is_there && after.is_there && length(uneven) <= SAME_BEND * length(change),
+    );
+}
+
+// The same over as many pixels as the surface asks for, or over the nearest ones.
+fn change_along(pair: ptr<function, Pair>, at: vec2<i32>, along: vec2<i32>, step_px: i32, s: Surface, slope: f32) -> Change {
+    let change = change_over(pair, at, along, step_px, s, slope);
+    if step_px == 1 || change.is_even { return change; }
+    return change_over(pair, at, along, 1, s, slope);
+}
+
 // As `kappa` of the surface, from the pixels around it. Where one of two is missing the difference is one-sided; where both are, nothing
 // is known but the curvature of the surface itself.
 fn kappa_of_screen(s: Surface, position_px: vec2<f32>, neighbours: ptr<function, Neighbours>) -> f32 {
-    let t = -s.position_view.z;
+    let at = vec2<i32>(position_px);
     let slope = -vec2<f32>(s.position_dx.z, s.position_dy.z) / view.footprint_px;
-    // A steep surface bends away from its plane in proportion.
-    let reach = PLANE_REACH * (pixel_world(view, t) + abs(slope));
-    var left_side = (*neighbours).left;
-    let left = beside(&left_side, s, t - slope.x, reach.x);
-    (*neighbours).left = left_side;
-    var right_side = (*neighbours).right;
-    let right = beside(&right_side, s, t + slope.x, reach.x);
-    (*neighbours).right = right_side;
-    var above_side = (*neighbours).above;
-    let above = beside(&above_side, s, t - slope.y, reach.y);
-    (*neighbours).above = above_side;
-    var below_side = (*neighbours).below;
-    let below = beside(&below_side, s, t + slope.y, reach.y);
-    (*neighbours).below = below_side;
-    let steps = vec2<f32>(
-        f32(u32(left.is_there) + u32(right.is_there)),
-        f32(u32(above.is_there) + u32(below.is_there)),
-    );
-    if any(steps == vec2<f32>(0.0)) { return s.kappa; }
-    let scale = 1.0 / (steps * view.plane_from_px.xy);
-    // Normals of what is missing are those of the fragment.
-    let dx = (right.normal - left.normal) * scale.x;
-    let dy = (below.normal - above.normal) * scale.y;
+    let wide_px = min(GRAIN_SHARE * s.grain_steps, vec2<f32>(s.rim_steps)) * view.footprint_px;
+    let step_px = vec2<i32>(clamp(wide_px, vec2<f32>(1.0), vec2<f32>(WIDEST_PX)));
+    var pair = (*neighbours).beside;
+    let across = change_along(&pair, at, vec2<i32>(1, 0), step_px.x, s, slope.x);
+    (*neighbours).beside = pair;
+    pair = (*neighbours).above;
+    let down = change_along(&pair, at, vec2<i32>(0, 1), step_px.y, s, slope.y);
+    (*neighbours).above = pair;
+    if min(across.steps_px, down.steps_px) == 0.0 { return s.kappa; }
+    let dx = across.normal / (across.steps_px * view.plane_from_px.x);
+    let dy = down.normal / (down.steps_px * view.plane_from_px.y);
     let plane = (position_px + view.tile_origin_px) * view.plane_from_px.xy + view.plane_from_px.zw;
-    return curvature_of(dx, dy, plane, t);
+    return curvature_of(dx, dy, plane, -s.position_view.z);
 }

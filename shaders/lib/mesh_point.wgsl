@@ -45,6 +45,8 @@ struct MeshPoint {
     at: vec2<f32>,
     // As in MeshCorners.
     creases: u32,
+    // Whether its normals are equal.
+    is_flat: bool,
     // Sum of the principal curvatures as it is seen, negative where convex, over scene units. With CURVATURE alone.
     kappa: f32,
 }
@@ -105,8 +107,8 @@ fn mesh_point(ray: Ray, index: u32) -> MeshPoint {
         point.creases = corners.creases;
         let of_shape = va.kappa + share_b * (vb.kappa - va.kappa) + share_c * (vc.kappa - va.kappa);
         // A triangle whose normals are equal is flat, whatever its neighbours are.
-        let is_flat = va.normal == vb.normal && va.normal == vc.normal;
-        point.kappa = select(sign(turned) * of_shape / max(part.radius, 1e-30), 0.0, is_flat);
+        point.is_flat = va.normal == vb.normal && va.normal == vc.normal;
+        point.kappa = select(sign(turned) * of_shape / max(part.radius, 1e-30), 0.0, point.is_flat);
     }
     point.base_color = unpack_linear(part.color);
     if COLORED && (part.color.y & 0x10000u) != 0u {
@@ -121,6 +123,14 @@ fn mesh_point(ray: Ray, index: u32) -> MeshPoint {
 fn mesh_normal_step(point: MeshPoint, step: vec3<f32>) -> vec3<f32> {
     let change = point.normal_b * dot(point.share_b, step) + point.normal_c * dot(point.share_c, step);
     return change - point.normal * dot(point.normal, change);
+}
+
+// How wide the triangle is at most along its plane, in steps: its longest line that way goes through a corner, from all of its share to none.
+// 0 where it is flat.
+fn mesh_width_steps(point: MeshPoint, step: vec3<f32>) -> f32 {
+    if point.is_flat { return 0.0; }
+    let grow = vec2<f32>(dot(point.share_b, step), dot(point.share_c, step));
+    return 1.0 / max(max(max(abs(grow.x), abs(grow.y)), abs(grow.x + grow.y)), 1.0 / FAR_STEPS);
 }
 
 // How far the nearest crease of the triangle is in the picture, in steps of `dx` and `dy` along its plane.

@@ -24,3 +24,7 @@ fn mesh_normal_step(point: MeshPoint, step: vec3<f32>) -> vec3<f32> {
 fn mesh_crease_steps(point: MeshPoint, dx: vec3<f32>, dy: vec3<f32>) -> f32 {
     return FAR_STEPS;
 }
+
+fn mesh_width_steps(point: MeshPoint, step: vec3<f32>) -> f32 {
+    return 0.0;
+}

@@ -31,6 +31,9 @@ struct Surface {
     kappa_of_screen: f32,
     // How far the nearest silhouette or crease is in the picture, in samples' footprints.
     rim_steps: f32,
+    // How wide the triangle is at most to the right and down, in samples' footprints: between its vertices normals change by one slope.
+    // 0 where it is flat, and where the surface bends as its formula says.
+    grain_steps: vec2<f32>,
 }
 
 // Farther than any rim reaches.
@@ -146,6 +149,7 @@ fn surface_at(ray: Ray, id: u32) -> Surface {
         if MESHES && is_mesh {
             s.kappa = mesh.kappa;
             s.rim_steps = min(s.rim_steps, mesh_crease_steps(mesh, s.position_dx, s.position_dy));
+            s.grain_steps = vec2<f32>(mesh_width_steps(mesh, s.position_dx), mesh_width_steps(mesh, s.position_dy));
         }
     }
     return s;

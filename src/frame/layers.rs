@@ -36,8 +36,8 @@ const SLACKS: [f64; 2] = [1.03, 1.25];
 /// Pixels of a run, see `shaders/lib/layers.wgsl`, and runs that a group gives room, see `shaders/layers/room.wgsl`.
 const RUN: u32 = 32;
 const ROOM_GROUP: u32 = 64;
-/// Rows and columns around each pixel that curvature from neighbouring pixels asks for.
-const HALO: u32 = 1;
+/// Rows and columns around each pixel that curvature from neighbouring pixels asks for, see `shaders/layers/neighbours.wgsl`.
+pub const HALO: u32 = 8;
 
 gpu_struct! {
     "lib/layers.wgsl",

@@ -741,7 +741,12 @@ impl Renderer {
     /// How far what is transparent in a pixel changes others, in pixels.
     pub fn layers_reach_px(&self, method: LayerMethod) -> u32 {
         let needs = self.contents.needs();
-        u32::from(needs.layered && (method != LayerMethod::Packed || needs.key.asks_neighbours()))
+        match method {
+            _ if !needs.layered => 0,
+            LayerMethod::Packed if needs.key.asks_neighbours() => layers::HALO,
+            LayerMethod::Packed => 0,
+            _ => 1,
+        }
     }
 
     /// Triangles of meshes that are drawn.
