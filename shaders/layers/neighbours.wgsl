@@ -9,7 +9,8 @@ const PLANE_REACH: f32 = 1.0;
 // not across the triangle's own creases and borders.
 const GRAIN_SHARE: f32 = 0.75;
 const WIDEST_PX: f32 = 8.0;
-// Where both sides do not bend alike within this share of what they bend, a feature of the surface ends, and no mean is taken over it.
+// Where both sides do not bend alike within this share of what they bend, a feature of the surface ends: no mean is taken over it, and the
+// triangle's own slope counts.
 const SAME_BEND: f32 = 0.15;
 
 // A list beside that of a pixel, and how far it is searched: fragments come from near to far, so that each begins where the one before
@@ -36,22 +37,23 @@ struct Beside {
     normal: vec3<f32>,
 }
 
-fn side_at(at: vec2<i32>) -> Side {
+fn side_at(at: vec2<i32>, index: u32) -> Side {
     let pixel = at.y * i32(layers.width) + at.x - i32(layers.first_pixel);
     if at.x < 0 || at.x >= i32(layers.width) || pixel < 0 || pixel >= i32(layers.num_pixels) {
         return Side(LayerList(0u, 0u), 0u);
     }
-    return Side(list_of(u32(pixel)), 0u);
+    let list = list_of(u32(pixel));
+    return Side(list, min(index, list.count));
 }
 
-// `along` is one pixel to the right or down.
-fn pair_at(at: vec2<i32>, along: vec2<i32>, step_px: i32) -> Pair {
-    return Pair(side_at(at - step_px * along), side_at(at + step_px * along), step_px);
+// `along` is one pixel to the right or down. Lists that are near each other are alike: they are searched from where the last ones were.
+fn pair_at(at: vec2<i32>, along: vec2<i32>, step_px: i32, index: vec2<u32>) -> Pair {
+    return Pair(side_at(at - step_px * along, index.x), side_at(at + step_px * along, index.y), step_px);
 }
 
 fn neighbours_of(position_px: vec2<f32>) -> Neighbours {
     let at = vec2<i32>(position_px);
-    return Neighbours(pair_at(at, vec2<i32>(1, 0), 1), pair_at(at, vec2<i32>(0, 1), 1));
+    return Neighbours(pair_at(at, vec2<i32>(1, 0), 1, vec2<u32>(0u)), pair_at(at, vec2<i32>(0, 1), 1, vec2<u32>(0u)));
 }
 
 // The fragment of the same object in a list beside, where it is expected at depth `t`, at most `reach` from it.
@@ -79,8 +81,7 @@ fn beside(side: ptr<function, Side>, s: Surface, t: f32, reach: f32) -> Beside {
     return Beside(is_there, select(s.normal_view, normal_of_mark(best), is_there));
 }
 
-// The change of normals from before a fragment to after it, and over how many pixels that is. Normals of what is missing are those of the
-// fragment.
+// The change of normals to the right or down, and over how many pixels that is. Normals of what is missing are those of the fragment.
 struct Change {
     normal: vec3<f32>,
     steps_px: f32,
@@ -90,7 +91,10 @@ struct Change {
 
 // `slope` is the change of depth for one pixel.
 fn change_over(pair: ptr<function, Pair>, at: vec2<i32>, along: vec2<i32>, step_px: i32, s: Surface, slope: f32) -> Change {
-    if (*pair).step_px != step_px { *pair = pair_at(at, along, step_px); }
+    if (*pair).step_px != step_px {
+        let index = vec2<u32>((*pair).before.index, (*pair).after.index);
+        *pair = pair_at(at, along, step_px, index);
+    }
     let t = -s.position_view.z;
     // A steep surface bends away from its plane in proportion.
     let reach = PLANE_REACH * (pixel_world(view, t) + abs(slope));
@@ -110,25 +114,25 @@ fn change_over(pair: ptr<function, Pair>, at: vec2<i32>, along: vec2<i32>, step_
     );
 }
 
-// The same over as many pixels as the surface asks for, or over the nearest ones.
-fn change_along(pair: ptr<function, Pair>, at: vec2<i32>, along: vec2<i32>, step_px: i32, s: Surface, slope: f32) -> Change {
+// The same, or the triangle's own where a wider one says nothing: `own` is the change for one sample's footprint.
+fn change_along(pair: ptr<function, Pair>, at: vec2<i32>, along: vec2<i32>, step_px: i32, s: Surface, slope: f32, own: vec3<f32>) -> Change {
     let change = change_over(pair, at, along, step_px, s, slope);
     if step_px == 1 || change.is_even { return change; }
-    return change_over(pair, at, along, 1, s, slope);
+    return Change(own, view.footprint_px, true);
 }
 
-// As `kappa` of the surface, from the pixels around it. Where one of two is missing the difference is one-sided; where both are, nothing
-// is known but the curvature of the surface itself.
+// As `kappa` of the surface, from the pixels around it. Where one of the nearest two is missing the difference is one-sided; where both
+// are, nothing is known but the curvature of the surface itself.
 fn kappa_of_screen(s: Surface, position_px: vec2<f32>, neighbours: ptr<function, Neighbours>) -> f32 {
     let at = vec2<i32>(position_px);
     let slope = -vec2<f32>(s.position_dx.z, s.position_dy.z) / view.footprint_px;
     let wide_px = min(GRAIN_SHARE * s.grain_steps, vec2<f32>(s.rim_steps)) * view.footprint_px;
     let step_px = vec2<i32>(clamp(wide_px, vec2<f32>(1.0), vec2<f32>(WIDEST_PX)));
     var pair = (*neighbours).beside;
-    let across = change_along(&pair, at, vec2<i32>(1, 0), step_px.x, s, slope.x);
+    let across = change_along(&pair, at, vec2<i32>(1, 0), step_px.x, s, slope.x, s.normal_dx);
     (*neighbours).beside = pair;
     pair = (*neighbours).above;
-    let down = change_along(&pair, at, vec2<i32>(0, 1), step_px.y, s, slope.y);
+    let down = change_along(&pair, at, vec2<i32>(0, 1), step_px.y, s, slope.y, s.normal_dy);
     (*neighbours).above = pair;
     if min(across.steps_px, down.steps_px) == 0.0 { return s.kappa; }
     let dx = across.normal / (across.steps_px * view.plane_from_px.x);

@@ -383,6 +383,8 @@ struct OnTriangle {
     slope: [f64; 2],
     /// Change of the shares of the second and third corner for a pixel to the right and down.
     grow: [[f64; 2]; 2],
+    /// Change of the normal for the same.
+    turn: [DVec3; 2],
     /// How far the nearest edge or silhouette is, in pixels.
     rim_px: f64,
 }
@@ -404,16 +406,17 @@ impl Triangle {
         let (normal, length) = (mixed.normalize(), mixed.length());
         let [along_b, along_c] = [1, 2].map(|corner| self.corners[corner] - self.corners[0]);
         let across = along_b.cross(along_c);
-        let share_of = [along_c.cross(across), across.cross(along_b)].map(|to| -to / across.length_squared());
+        let share_of = [along_c.cross(across), across.cross(along_b)].map(|to| to / across.length_squared());
         // A step on the tangent plane.
         let pixel = view.pixel_view();
         let steps = [DVec3::X * pixel, DVec3::NEG_Y * pixel]
             .map(|moved| moved - ray.direction * (normal.dot(moved) / normal.dot(ray.direction)));
         let grow = steps.map(|step| share_of.map(|share| share.dot(step)));
-        let facing_step = grow.map(|[b, c]| {
+        let turn = grow.map(|[b, c]| {
             let change = (b * (self.normals[1] - self.normals[0]) + c * (self.normals[2] - self.normals[0])) / length;
-            (change - normal * normal.dot(change)).dot(-ray.direction)
+            change - normal * normal.dot(change)
         });
+        let facing_step = turn.map(|change| change.dot(-ray.direction));
         let silhouette = 0.5 * normal.dot(-ray.direction) / facing_step[0].hypot(facing_step[1]);
         // In pixels shares are linear.
         let of_a = grow.map(|[b, c]| -b - c);
@@ -426,11 +429,12 @@ impl Triangle {
             depth: -point.z,
             slope,
             grow,
+            turn,
             rim_px: edge(0).min(edge(1)).min(edge(2)).min(silhouette),
         })
     }
 
-    /// `change_along` of `shaders/layers/neighbours.wgsl` along an axis, by pixel; none where a neighbour is missing, or where rounding
+    /// `change_along` of `shaders/layers/neighbours.wgsl` along an axis, by pixel, and over how many pixels to each side; none where a neighbour is missing, or where rounding
     /// decides.
     fn change(&self, view: &View, position_px: DVec2, axis: usize) -> Option<(DVec3, f64)> {
         let own = self.at(view, position_px)?;
@@ -454,18 +458,17 @@ impl Triangle {
             });
             Some([sides[0]?, sides[1]?])
         };
-        let mut step = wide.floor();
+        let step = wide.floor();
         let [before, after] = sides(step)?;
         let uneven = (after.1 + before.1 - 2.0 * own.normal).length() / (after.1 - before.1).length();
         for (share, most) in [(uneven, 0.15), (before.0, 1.0), (after.0, 1.0)] {
             if (share / most - 1.0).abs() < 0.02 {
                 return None;
             }
-            if share > most {
-                step = 1.0;
+            if share > most && step > 1.0 {
+                return Some((own.turn[axis], 0.0));
             }
         }
-        let [before, after] = sides(step)?;
         if before.0.max(after.0) > 1.0 {
             return None;
         }
