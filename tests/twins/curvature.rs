@@ -332,7 +332,7 @@ fn curvature_of_neighbouring_pixels_is_that_of_the_surface() {
     let Some(gpu) = gpu::device() else { return };
     let size = [256, 256];
     let above = r#""position": [0.8, -1.2, 2.4]"#;
-    // Of the coarse ring a triangle has some ten pixels: by differences over one pixel the error is 0.05.
+    // Of the coarse ring a triangle has some ten pixels: by differences over one pixel the error is 0.045.
     for (camera, cells, most) in [
         (above, [360, 180], 0.004),
         (r#""orthographic": true, "position": [0.3, 1, 2]"#, [360, 180], 0.004),
@@ -434,8 +434,8 @@ impl Triangle {
         })
     }
 
-    /// `change_along` of `shaders/layers/neighbours.wgsl` along an axis, by pixel, and over how many pixels to each side; none where a neighbour is missing, or where rounding
-    /// decides.
+    /// `change_along` of `shaders/layers/neighbours.wgsl` along an axis, by pixel, and over how many pixels to each side, 0 where it is
+    /// the triangle's own; none where a neighbour is missing, or where rounding decides.
     fn change(&self, view: &View, position_px: DVec2, axis: usize) -> Option<(DVec3, f64)> {
         let own = self.at(view, position_px)?;
         // Whether a pixel on the border sees the triangle is up to rounding.
