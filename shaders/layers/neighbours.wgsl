@@ -5,10 +5,9 @@
 // How far from its tangent plane a surface may be one pixel on, in widths of a pixel on it as it is seen: beyond, it is another sheet.
 const PLANE_REACH: f32 = 1.0;
 // Normals between the vertices of a mesh change by one slope within each triangle, which tells no more than one curvature for all of it. So
-// differences go over one and a half triangles, which takes the mean over some (ours): over no more pixels than these to each side, and
-// not across the triangle's own creases and borders.
+// differences go over one and a half triangles, which takes the mean over some (ours): over no more than WIDEST_PX pixels to each side,
+// and not across the triangle's own creases and borders.
 const GRAIN_SHARE: f32 = 0.75;
-const WIDEST_PX: f32 = 8.0;
 // Where both sides do not bend alike within this share of what they bend, a feature of the surface ends: no mean is taken over it, and the
 // triangle's own slope counts.
 const SAME_BEND: f32 = 0.15;

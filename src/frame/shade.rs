@@ -523,9 +523,10 @@ pub fn shade_module(key: &ShadeKey) -> Module {
         module.add_generated(
             "layers options",
             format!(
-                "const FINISH: u32 = {}u;\nconst ASKS_NEIGHBOURS: bool = {asks};\nconst KEEPS_LIGHT: bool = {};",
+                "const FINISH: u32 = {}u;\nconst ASKS_NEIGHBOURS: bool = {asks};\nconst KEEPS_LIGHT: bool = {};\nconst WIDEST_PX: f32 = {:?};",
                 finish.number(),
-                key.layer_work.keeps_light()
+                key.layer_work.keeps_light(),
+                f64::from(layers::HALO)
             ),
         );
         module.add(wgsl!("lib/finish.wgsl"));
