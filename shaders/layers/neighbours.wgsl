@@ -27,8 +27,8 @@ struct Pair {
 }
 
 struct Neighbours {
-    beside: Pair,
-    above: Pair,
+    across: Pair,
+    down: Pair,
 }
 
 struct Beside {
@@ -127,12 +127,12 @@ fn kappa_of_screen(s: Surface, position_px: vec2<f32>, neighbours: ptr<function,
     let slope = -vec2<f32>(s.position_dx.z, s.position_dy.z) / view.footprint_px;
     let wide_px = min(GRAIN_SHARE * s.grain_steps, vec2<f32>(s.rim_steps)) * view.footprint_px;
     let step_px = vec2<i32>(clamp(wide_px, vec2<f32>(1.0), vec2<f32>(WIDEST_PX)));
-    var pair = (*neighbours).beside;
+    var pair = (*neighbours).across;
     let across = change_along(&pair, at, vec2<i32>(1, 0), step_px.x, s, slope.x, s.normal_dx);
-    (*neighbours).beside = pair;
-    pair = (*neighbours).above;
+    (*neighbours).across = pair;
+    pair = (*neighbours).down;
     let down = change_along(&pair, at, vec2<i32>(0, 1), step_px.y, s, slope.y, s.normal_dy);
-    (*neighbours).above = pair;
+    (*neighbours).down = pair;
     if min(across.steps_px, down.steps_px) == 0.0 { return s.kappa; }
     let dx = across.normal / (across.steps_px * view.plane_from_px.x);
     let dy = down.normal / (down.steps_px * view.plane_from_px.y);

@@ -7,11 +7,13 @@ pub mod bkb;
 mod contents;
 mod explain;
 mod fullscreen;
+mod input;
 pub mod layers;
 mod lights;
 pub mod mesh;
 pub mod objects;
 mod occlusion;
+mod plan;
 mod post;
 mod resolve;
 mod shade;
@@ -26,23 +28,25 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 pub use aov::aov_module;
-use bkb::{Bkb, BkbForm, BkbKey, BkbPlan, BkbWords};
+use bkb::{Bkb, BkbWords};
 pub use contents::Materials;
 use contents::{Contents, Needs};
 pub use explain::Step;
+pub use input::{FrameInput, LayerMethod};
 use layers::{LayerTargets, Layers, LayersPlan};
 pub use lights::{Light, Lights, MAX_LIGHTS};
 use objects::{DrawList, Material};
 use occlusion::Reach;
+use plan::Plan;
 pub use post::{Effect, EffectKey, Finish, effect_module};
-use post::{EffectGroups, LayersAt, Post, PostTargets, turn};
+use post::{EffectGroups, Post, PostTargets, turn};
 pub use resolve::resolve_module;
 pub use shade::{LayerWork, Output, ShadeKey, ShaderNeeds, shade_module};
 use shade::{Shade, ShadeInputs, ShadeTarget};
+use shadow::ShadowMaps;
 pub use shadow::{MAX_SHADOWS, SHADOWLESS_RADII, ShadowFilter, ShadowQuality, ShadowView, Shadows};
-use shadow::{ShadowMaps, ShadowPlan};
 pub use targets::TargetBytes;
-use targets::{Chain, Targets};
+use targets::Targets;
 use view::sample_offsets_px;
 pub use view::{Tile, View};
 use visibility::{DEPTH_FORMAT, Eye, ID_FORMAT, Visibility, VisibilityPass};
@@ -51,7 +55,6 @@ pub use visibility::{mesh_module, visibility_module};
 
 use crate::effects::EFFECTS;
 use crate::gpu::{Gpu, GpuError, GpuStruct, PassTimer, PassTimes, StructInfo, read_texture};
-use crate::scene::{Camera, LightPlace, Lighting, Sphere};
 use crate::shading::SHADERS;
 
 /// Pictures of 8 bits a channel, sRGB values written by the shader.
@@ -84,64 +87,6 @@ fn adding_light(gpu: &Gpu) -> wgpu::ColorTargetState {
     }
 }
 
-/// How the fragments of what is transparent are put in order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LayerMethod {
-    /// All of them, in sorted lists.
-    Packed,
-    /// The nearest of each pixel, in buckets.
-    Bkb {
-        /// How many of them.
-        k: u32,
-        /// How they are used.
-        form: BkbForm,
-    },
-}
-
-/// What one still needs beside objects and materials.
-#[derive(Debug, Clone)]
-pub struct FrameInput<'a> {
-    /// The camera.
-    pub camera: &'a Camera,
-    /// The lights, in view space.
-    pub lighting: &'a Lighting,
-    /// What shadow maps must hold, in world space.
-    pub bounds: Sphere,
-    /// Premultiplied linear background; alpha 0 for a transparent picture.
-    pub background: [f32; 4],
-    /// Width and height in pixels.
-    pub size: [u32; 2],
-    /// The tile of the picture to draw; all of it where there is none.
-    pub tile: Option<Tile>,
-    /// Whether the shadow maps still hold what the frame needs: the last one was another tile of the same picture.
-    pub shadows_drawn: bool,
-    /// Samples a pixel.
-    pub samples: u32,
-    /// 16 bits a channel instead of 8.
-    pub wide: bool,
-    /// Post effects, in the order in which they change the picture.
-    pub effects: &'a [Effect],
-    /// Most bytes that the fragments of what is transparent take at once.
-    pub layer_bytes: u64,
-    /// How they are put in order.
-    pub layer_method: LayerMethod,
-    /// What curvature, with the radius of `bounds` as the unit of length, is multiplied by before tanh.
-    pub curvature_gain: f32,
-}
-
-impl FrameInput<'_> {
-    /// Width and height of what is drawn, in pixels.
-    fn drawn_size(&self) -> [u32; 2] {
-        self.tile.map_or(self.size, |tile| tile.size_px)
-    }
-
-    /// The view at pixel centres.
-    fn view(&self) -> View {
-        let view = View::new(self.camera, self.size);
-        self.tile.map_or(view, |tile| view.tile(tile))
-    }
-}
-
 /// Linear float pictures of the geometry and light at pixel centres.
 pub struct Aovs {
     /// View-space normal and depth (-1: nothing), four floats a pixel.
@@ -156,120 +101,6 @@ pub struct Aovs {
     pub layer_count: Vec<u32>,
     /// Sum of the principal curvatures as they are seen, negative where convex, over scene units; meaningless where nothing is.
     pub curvature: Vec<f32>,
-}
-
-/// The passes of one frame and what they need, found before anything is made.
-struct Plan {
-    /// Samples a pixel.
-    samples: u32,
-    /// Straight to picture values, without a target in which samples add up.
-    direct: bool,
-    shadows: ShadowPlan,
-    map_size: u32,
-    shade: ShadeKey,
-    seen: VisibilityKey,
-    effects: Vec<EffectKey>,
-    layers: Option<LayersPlan>,
-    /// Buckets that what is transparent is blended from, instead of from lists.
-    bkb: Option<BkbPlan>,
-}
-
-impl Plan {
-    /// `can_keep` says whether lists of what is transparent can be kept for effects that read them.
-    fn new(gpu: &Gpu, needs: &Needs, input: &FrameInput<'_>, quality: ShadowQuality, can_keep: bool) -> Plan {
-        let samples = input.samples.clamp(1, MAX_SAMPLES);
-        let direct = samples == 1 && !input.wide;
-        let map_size = quality.map_size(gpu, input.size[1]);
-        let shadows = ShadowPlan::new(input.lighting, input.camera, input.bounds, map_size);
-        let shadowed = !shadows.views.is_empty();
-        let orthographic = input.camera.orthographic;
-        let shade = ShadeKey {
-            lights: input.lighting.lights.len().min(MAX_LIGHTS) as u32,
-            point_lights: input.lighting.lights.iter().any(|light| matches!(light.place, LightPlace::Point { .. })),
-            ambient: input.lighting.ambient != glam::Vec3::ZERO,
-            shadows: shadowed,
-            soft_taps: if shadowed { quality.soft_taps(samples) } else { 0 },
-            shadow_filter: quality.filter,
-            orthographic,
-            encode: direct && input.effects.is_empty() && !needs.layered,
-            geometry: !input.effects.is_empty() || needs.layered,
-            ..needs.key.clone()
-        };
-        let drawn = if needs.layered { Drawn::Opaque } else { Drawn::All };
-        let seen = VisibilityKey { hulls: shade.hulls, orthographic, light: false, drawn };
-        let before = input.effects.iter().take_while(|effect| EFFECTS[effect.effect].is_before_layers()).count();
-        let mut effects = post::keys(input.effects, orthographic, direct, needs.layered.then_some(before));
-        let may_keep = needs.layered && can_keep && input.layer_method == LayerMethod::Packed;
-        let apart = if may_keep { post::keep_apart(&mut effects, before) } else { None };
-        let finish = match (before == input.effects.len(), direct) {
-            (false, _) => Finish::Next,
-            (true, false) => Finish::Add,
-            (true, true) => Finish::Encode,
-        };
-        let surfaces = apart.map_or(finish == Finish::Next, |apart| apart.lines);
-        let layers = needs.layered.then(|| LayersPlan::new(&shade, seen, finish, surfaces, before, apart));
-        let bkb = match input.layer_method {
-            LayerMethod::Bkb { k, form } if needs.layered => {
-                let shade = ShadeKey { hulls: false, encode: false, geometry: false, ..shade.clone() };
-                Some(BkbPlan {
-                    key: BkbKey { shade, form, finish, keeps_kappa: false },
-                    k,
-                    num_materials: needs.num_materials,
-                    curvature_scale: input.bounds.radius * input.curvature_gain,
-                })
-            }
-            _ => None,
-        };
-        Plan { samples, direct, shadows, map_size, shade, seen, effects, layers, bkb }
-    }
-
-    /// Has counts and ids of nearest surfaces found, and curvatures kept.
-    fn ask_for_aovs(&mut self) {
-        if let Some(layers) = &mut self.layers {
-            layers.for_aovs = true;
-        }
-        if let Some(bkb) = &mut self.bkb {
-            bkb.key.keeps_kappa = !bkb.key.form.is_dual_pass();
-        }
-    }
-
-    /// The lists of what is transparent, where the frame makes them: without buckets, or where nearest surfaces are asked for.
-    fn lists(&self) -> Option<&LayersPlan> {
-        self.layers.as_ref().filter(|layers| self.bkb.is_none() || layers.has_nearest())
-    }
-
-    /// How a light sees the scene. Outlines cast no shadows, nor does what is transparent.
-    fn lit(&self, shadow: &ShadowView) -> VisibilityKey {
-        VisibilityKey { hulls: false, orthographic: shadow.light.orthographic > 0.5, light: true, ..self.seen }
-    }
-
-    /// Whether layers stay apart for an effect that reads their lists.
-    fn is_apart(&self) -> bool {
-        self.layers.as_ref().is_some_and(|layers| layers.apart.is_some())
-    }
-
-    /// Where layers stand among the effects.
-    fn layers_at(&self) -> Option<LayersAt> {
-        self.layers.as_ref().map(|layers| LayersAt {
-            effects: layers.after_effects,
-            surfaces: layers.leaves_surfaces(),
-            apart: layers.apart.is_some(),
-        })
-    }
-
-    /// How often the picture of a sample is changed.
-    fn chain(&self) -> Chain {
-        let at = self.layers_at();
-        if let Some(LayersPlan { after_effects, apart: Some(apart), .. }) = &self.layers {
-            let surfaces = post::num_left(&self.effects[..*after_effects]);
-            return Chain { pictures: after_effects + 1, surfaces, lines: apart.lines };
-        }
-        Chain {
-            pictures: self.effects.len() + usize::from(at.is_some()),
-            surfaces: post::num_left(&self.effects) + usize::from(at.is_some_and(|at| at.surfaces)),
-            lines: false,
-        }
-    }
 }
 
 /// Draws frames of one scene in one style. Everything on the device is kept from frame to frame, and written again only

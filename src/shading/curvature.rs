@@ -2,7 +2,7 @@
 //! [Murray2016 §5].
 //!
 //! Another shader lights the surfaces. Where this differs from the paper: see `shaders/objects/curvature.wgsl`. Twin:
-//! `tests/twins/curvature.rs`.
+//! `tests/twins/curvature.rs` and `neighbours.rs`.
 
 use super::{BASE_COLOR, MaterialContext, OPACITY, ObjectShader, basic, toon};
 pub use crate::config::param::Transfer;

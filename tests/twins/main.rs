@@ -16,6 +16,7 @@ mod impostors;
 mod layers;
 mod mesh_lines;
 mod meshes;
+mod neighbours;
 mod occlusion;
 mod orders;
 mod outline;
