@@ -33,10 +33,10 @@ struct CurvatureMaterial {
 struct Bend {
     // Signed, -1 convex to 1 concave.
     kappa: f32,
-    // Its size, 0..1; at rims not that of kappa, which may pass through 0 there.
-    curvature: f32,
     // 0 near to 1 far.
     depth: f32,
+    // Share of the sample's footprint that a rim takes, 0..1.
+    rim: f32,
 }
 
 // Power of the foreshortening, and the least cosine that it is taken of.
@@ -70,16 +70,22 @@ fn curvature_bend(s: Surface, m: CurvatureMaterial) -> Bend {
     if CURVATURE_EMPHASIS && m.emphasis > 0.0 { kappa = mix(kappa, curvature_of_picture(s, kappa), m.emphasis); }
     let signed = tanh(clamp(m.gain * kappa, -20.0, 20.0));
     let width_px = m.contour_px + m.contour_world / pixel_world_at(s);
-    let rim = select(0.0, clamp(width_px / view.footprint_px - s.rim_steps + 0.5, 0.0, 1.0), width_px > 0.0);
-    return Bend(
-        mix(signed, -m.contour, rim),
-        mix(abs(signed), m.contour, rim),
-        curvature_depth(m, -s.position_view.z),
-    );
+    // What a box of one footprint sees of a rim so wide to both sides of its line.
+    let width_steps = width_px / view.footprint_px;
+    let rim = clamp(width_steps - s.rim_steps + 0.5, 0.0, min(2.0 * width_steps, 1.0));
+    return Bend(signed, curvature_depth(m, -s.position_view.z), rim);
 }
 
-// Linear light of a surface, weighed, and the share of what is behind that it covers.
+// Linear light of a surface, weighed, and the share of what is behind that it covers. A footprint across the border of a rim sees both
+// sides of it: their covers add up, since that of their mean would be another wherever transfer functions are not straight lines (ours).
 fn curvature_stylised(m: CurvatureMaterial, color: vec3<f32>, bend: Bend) -> vec4<f32> {
-    let opacity = m.opacity * opacity_transfer(curvature_tables, m.table, bend.curvature, bend.depth);
-    return vec4<f32>(color * color_transfer(curvature_tables, m.table, bend.kappa), opacity);
+    var cover = opacity_transfer(curvature_tables, m.table, abs(bend.kappa), bend.depth);
+    var factor = color_transfer(curvature_tables, m.table, bend.kappa);
+    if bend.rim > 0.0 {
+        let of_rim = bend.rim * opacity_transfer(curvature_tables, m.table, m.contour, bend.depth);
+        let whole = (1.0 - bend.rim) * cover + of_rim;
+        factor = mix(factor, color_transfer(curvature_tables, m.table, -m.contour), of_rim / max(whole, 1e-12));
+        cover = whole;
+    }
+    return vec4<f32>(color * factor, m.opacity * cover);
 }

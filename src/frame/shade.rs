@@ -673,7 +673,7 @@ pub fn stylising_by_kappa(key: &ShadeKey) -> String {
         let _ = writeln!(
             stylings,
             "    if materials[material].stylist == {number}u {{\n        {m}\n        \
-             return {name}_stylised(m, color, Bend(kappa, abs(kappa), {name}_depth(m, t)));\n    }}"
+             return {name}_stylised(m, color, Bend(kappa, {name}_depth(m, t), 0.0));\n    }}"
         );
     }
     format!(

@@ -33,10 +33,10 @@ pub struct Stylist {
 pub struct Bend {
     /// -1 convex to 1 concave.
     pub kappa: f64,
-    /// Its size, 0..1.
-    pub curvature: f64,
     /// 0 near to 1 far.
     pub depth: f64,
+    /// Share of a sample that a rim takes, 0..1.
+    pub rim: f64,
 }
 
 impl Stylist {
@@ -60,24 +60,31 @@ impl Stylist {
         }
         let signed = (f64::from(m.gain) * kappa).tanh();
         let width_px = f64::from(m.contour_px) + f64::from(m.contour_world) / pixel_world;
-        let rim = if width_px > 0.0 { ((width_px - bent.rim_px) / footprint_px + 0.5).clamp(0.0, 1.0) } else { 0.0 };
-        let contour = f64::from(m.contour);
+        let width = width_px / footprint_px;
+        let rim = (width - bent.rim_px / footprint_px + 0.5).clamp(0.0, (2.0 * width).min(1.0));
         let depth = 0.5 * ((hit.t + self.center.z) / f64::from(m.radius) + 1.0);
-        Bend {
-            kappa: signed + rim * (-contour - signed),
-            curvature: signed.abs() + rim * (contour - signed.abs()),
-            depth: ((depth - f64::from(m.depth_start)) * f64::from(m.depth_scale)).clamp(0.0, 1.0),
-        }
+        let depth = ((depth - f64::from(m.depth_start)) * f64::from(m.depth_scale)).clamp(0.0, 1.0);
+        Bend { kappa: signed, depth, rim }
     }
 
     /// Share of what is behind that the surface covers.
     pub fn opacity(&self, bend: Bend) -> f64 {
-        f64::from(self.material.opacity) * self.opacity.opacity(bend.curvature, bend.depth)
+        f64::from(self.material.opacity) * self.covers(bend).iter().sum::<f64>()
     }
 
     /// Its light, weighed.
     pub fn weighed(&self, color: DVec3, bend: Bend) -> DVec3 {
-        color * DVec3::from_array(self.color.color(bend.kappa))
+        let [of_body, of_rim] = self.covers(bend);
+        let [body, rim] =
+            [bend.kappa, -f64::from(self.material.contour)].map(|kappa| DVec3::from(self.color.color(kappa)));
+        color * body.lerp(rim, of_rim / (of_body + of_rim).max(1e-12))
+    }
+
+    /// What the surface beside its rim covers, and its rim.
+    fn covers(&self, bend: Bend) -> [f64; 2] {
+        [(bend.kappa.abs(), 1.0 - bend.rim), (f64::from(self.material.contour), bend.rim)].map(|(curvature, share)| {
+            if share > 0.0 { share * self.opacity.opacity(curvature, bend.depth) } else { 0.0 }
+        })
     }
 }
 

@@ -45,8 +45,8 @@ fn color_transfer(texels: &[[f32; 4]], kappa: f32) -> [f32; 3] {
 #[derive(Debug, Clone, Copy)]
 struct Bend {
     kappa: f32,
-    curvature: f32,
     depth: f32,
+    rim: f32,
 }
 
 /// `curvature_bend`: `kappa` is the surface's own, `steps` the distance to its rim in footprints.
@@ -66,13 +66,19 @@ fn curvature_bend(s: &Surface, kappa: f32, m: &CurvatureMaterial, middle: f32, p
     }
     let signed = (m.gain * kappa).tanh();
     let width_px = m.contour_px + m.contour_world / pixel_world;
-    let rim = if width_px > 0.0 { (width_px - rim_steps + 0.5).clamp(0.0, 1.0) } else { 0.0 };
+    let rim = (width_px - rim_steps + 0.5).clamp(0.0, (2.0 * width_px).min(1.0));
     let depth = 0.5 * ((-s.position_view.z - middle) / m.radius + 1.0);
-    Bend {
-        kappa: signed + rim * (-m.contour - signed),
-        curvature: signed.abs() + rim * (m.contour - signed.abs()),
-        depth: ((depth - m.depth_start) * m.depth_scale).clamp(0.0, 1.0),
-    }
+    Bend { kappa: signed, depth: ((depth - m.depth_start) * m.depth_scale).clamp(0.0, 1.0), rim }
+}
+
+/// `curvature_stylised` of white light: its factor by channel, and its opacity.
+fn curvature_stylised(texels: &[[f32; 4]], m: &CurvatureMaterial, bend: Bend) -> ([f32; 3], f32) {
+    let (of_body, of_rim) = (1.0 - bend.rim, bend.rim);
+    let body = of_body * opacity_transfer(texels, bend.kappa.abs(), bend.depth);
+    let rim = of_rim * opacity_transfer(texels, m.contour, bend.depth);
+    let [on_body, on_rim] = [bend.kappa, -m.contour].map(|kappa| color_transfer(texels, kappa));
+    let share = rim / (body + rim).max(1e-12);
+    ([0, 1, 2].map(|channel| on_body[channel] + share * (on_rim[channel] - on_body[channel])), m.opacity * (body + rim))
 }
 
 /// `kappa_of_screen` of `shaders/layers/neighbours.wgsl` for an object alone; none where no neighbour is on one of both axes.
@@ -210,8 +216,8 @@ fn the_device_weighs_light_as_the_twin_does() {
                     }
                     let pixel = world.view.pixel_view() * if orthographic { 1.0 } else { hit.t };
                     let bend = curvature_bend(&s, kappa as f32, &material, middle as f32, pixel as f32);
-                    let alpha = f64::from(opacity_transfer(&texels, bend.curvature, bend.depth));
-                    let factor = color_transfer(&texels, bend.kappa);
+                    let (factor, alpha) = curvature_stylised(&texels, &material, bend);
+                    let alpha = f64::from(alpha);
                     for channel in 0..3 {
                         light[channel] += open * alpha * f64::from(base[channel] * factor[channel]);
                     }
@@ -410,25 +416,37 @@ fn looks_of_glass_are_those_of_the_reference() {
     }
 }
 
-#[test]
-fn contours_are_as_wide_in_points_at_any_size() {
-    // A ball in black on white, its rim alone.
-    let style = r##"{ "camera": { "bgcolor": "white", "orthographic": true }, "geometry": { "atom": "1A", "scale": 1 },
-        "mapping": { "*": "c" }, "shaders": [{ "name": "c", "shader": "curvature", "properties": { "base_color": "black",
-          "shading": "unlit", "gain": 0, "opacity_transfer": [[0, 0], [1, 1]], "contour_width": "12pt" } }] }"##;
-    let Some(mut engine) = gpu::engine(&["C 0 0 0"], style) else { return };
-    let mut shares = Vec::new();
-    for size in [[270, 270], [1080, 1080], [2160, 2160]] {
-        let image = gpu::still(&mut engine, size, 4);
-        let dark: f64 = gpu::channel(&image, 0).iter().map(|light| 1.0 - light).sum();
-        shares.push(dark / f64::from(size[0] * size[1]));
-    }
-    // A ring of 12 of 1080 points within the ball's outline.
+/// What the rim of a ball covers, black on white, over a ring of its width in points; it covers nothing but where curvature is more than
+/// `from`.
+fn covered_by_rim(width: f64, from: f64, pictures: &[(u32, u32)]) -> Option<Vec<f64>> {
+    let style = format!(
+        r##"{{ "camera": {{ "bgcolor": "white", "orthographic": true }}, "geometry": {{ "atom": "1A", "scale": 1 }},
+          "mapping": {{ "*": "c" }}, "shaders": [{{ "name": "c", "shader": "curvature", "properties": {{ "base_color": "black",
+            "shading": "unlit", "gain": 0, "opacity_transfer": [[0, 0], [{from}, 0], [1, 1]], "contour_width": "{width}pt" }} }}] }}"##
+    );
+    let mut engine = gpu::engine(&["C 0 0 0"], &style)?;
     let camera = engine.camera([1080, 1080]).expect("a camera");
     let ball = 1.0 / f64::from(camera.half_extent.y);
-    let width = 12.0 / 540.0;
-    let due = std::f64::consts::PI * (ball * ball - (ball - width).powi(2)) / 4.0;
-    assert!(shares.iter().all(|share| (share / due - 1.0).abs() < 0.04), "{shares:?} for {due}");
+    let ring = std::f64::consts::PI * (ball * ball - (ball - width / 540.0).powi(2)) / 4.0;
+    let covered = |&(size, samples): &(u32, u32)| {
+        let image = gpu::still(&mut engine, [size, size], samples);
+        let dark: f64 = gpu::channel(&image, 0).iter().map(|light| 1.0 - light).sum();
+        dark / f64::from(size * size) / ring
+    };
+    Some(pictures.iter().map(covered).collect())
+}
+
+#[test]
+fn contours_are_as_wide_in_points_at_any_size() {
+    let Some(shares) = covered_by_rim(12.0, 0.01, &[(270, 4), (1080, 4), (2160, 4)]) else { return };
+    assert!(shares.iter().all(|share| (share - 1.0).abs() < 0.04), "{shares:?}");
+}
+
+/// A third of a pixel and of what a footprint sees half: a rim covers in proportion, however its opacity rises.
+#[test]
+fn thin_rims_cover_as_much_as_they_are_wide() {
+    let Some(shares) = covered_by_rim(3.0, 0.9, &[(108, 1), (108, 4), (108, 16), (540, 1)]) else { return };
+    assert!(shares.iter().all(|share| (share - 1.0).abs() < 0.03), "{shares:?}");
 }
 
 #[test]
