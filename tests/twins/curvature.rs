@@ -442,7 +442,7 @@ fn contours_are_as_wide_in_points_at_any_size() {
     assert!(shares.iter().all(|share| (share - 1.0).abs() < 0.04), "{shares:?}");
 }
 
-/// A third of a pixel and of what a footprint sees half: a rim covers in proportion, however its opacity rises.
+/// Rims of 0.3 to 1.5 footprints of a sample cover in proportion, however late their opacity rises.
 #[test]
 fn thin_rims_cover_as_much_as_they_are_wide() {
     let Some(shares) = covered_by_rim(3.0, 0.9, &[(108, 1), (108, 4), (108, 16), (540, 1)]) else { return };
